@@ -1,7 +1,6 @@
 //! A facade with bands repeated or taken away.
 
-use super::in_line::Piece;
-use edifice_shape::is_background;
+use super::in_line::{Piece, is_wall};
 
 /// A band by its seams.
 pub(super) type Band = (f64, f64);
@@ -68,7 +67,7 @@ pub(super) fn apply<'a>(
             };
             let length = out[own].along.1 - out[own].along.0;
             let whole = same(length, piece.along.1 - piece.along.0);
-            if begun && !goes_on && !whole && !is_background(piece.label) {
+            if begun && !goes_on && !whole && !is_wall(piece.label) {
                 cut.push(piece.label.to_owned());
             }
             if goes_on {

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::in_line::Piece;
-use edifice_shape::is_background;
+use super::in_line::{Piece, is_wall};
 
 /// New gaps are at least so many times as long as the least of their kind.
 const CLOSEST: f64 = 0.95;
@@ -31,7 +30,7 @@ impl<'a> Contacts<'a> {
         for row in 0..rows {
             let elements = |column: usize| {
                 let piece = &pieces[cells[column][row]];
-                (!is_background(piece.label)).then_some(piece)
+                (!is_wall(piece.label)).then_some(piece)
             };
             let mut last = (EDGE, 0.0);
             for column in 0..cells.len() {

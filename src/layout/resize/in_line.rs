@@ -19,10 +19,15 @@ pub(super) struct Piece<'a> {
     pub across: (f64, f64),
 }
 
+/// True for background, also of a numbered kind, as `Wall2` of the grammars of Wu et al.
+pub(super) fn is_wall(label: &str) -> bool {
+    is_background(label.trim_end_matches(|c: char| c.is_ascii_digit()))
+}
+
 /// For each label of elements: the number below a next floor, and the share of them with their like in line there.
 pub(super) fn shares<'a>(pieces: &[Piece<'a>], noise: f64) -> Shares<'a> {
     let mut by_label: BTreeMap<&str, Vec<&Piece>> = BTreeMap::new();
-    for piece in pieces.iter().filter(|piece| !is_background(piece.label)) {
+    for piece in pieces.iter().filter(|piece| !is_wall(piece.label)) {
         by_label.entry(piece.label).or_default().push(piece);
     }
     let share = |(label, mut own): (&'a str, Vec<&Piece>)| {

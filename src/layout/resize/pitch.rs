@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::in_line::Piece;
-use edifice_shape::is_background;
+use super::in_line::{Piece, is_wall};
 
 /// Least `|ln|` of the ratio of two lengths of elements of different sizes.
 const SIZE: f64 = 0.1;
@@ -25,14 +24,14 @@ pub(super) fn pitches<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str,
         shared > 0.5 * (p.across.1 - p.across.0).min(q.across.1 - q.across.0)
     };
     let mut out: BTreeMap<&str, f64> = BTreeMap::new();
-    for p in pieces.iter().filter(|p| !is_background(p.label)) {
+    for p in pieces.iter().filter(|p| !is_wall(p.label)) {
         let after = pieces
             .iter()
             .filter(|q| alike(p, q) && q.along.0 >= p.along.1 + noise && beside(p, q))
             .min_by(|a, b| a.along.0.total_cmp(&b.along.0));
         let Some(q) = after else { continue };
         let between = |r: &Piece| {
-            is_background(r.label)
+            is_wall(r.label)
                 && r.along.0 >= p.along.1 - noise
                 && r.along.1 <= q.along.0 + noise
                 && beside(p, r)

@@ -196,3 +196,20 @@ fn a_floor_is_added_with_its_cornice() {
         );
     }
 }
+
+#[test]
+fn numbered_kinds_of_walls_are_walls() {
+    let own = windows(4, 3);
+    let mut numbered = own.clone();
+    for (k, region) in numbered.regions.iter_mut().enumerate() {
+        if region.label == "wall" && region.rect.width < 20.0 {
+            region.label = format!("Wall{}", 1 + k % 2);
+        }
+    }
+    for (width, height) in [(own.width, 1.5 * own.height), (own.width, 2.0 * own.height)] {
+        let plain = resized(&own, width, height).unwrap();
+        let found = resized(&numbered, width, height).unwrap();
+        assert_eq!(found.bands, plain.bands);
+        assert!(found.bands[1] > 0);
+    }
+}

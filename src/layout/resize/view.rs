@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::apply::Band;
 use super::contacts::Contacts;
-use super::in_line::Piece;
+use super::in_line::{Piece, is_wall};
 use super::pitch::{alike, pitches};
-use edifice_shape::{Axis, Facade, is_background};
+use edifice_shape::{Axis, Facade};
 
 /// Shortest and longest band, as shares of the side.
 const BAND: (f64, f64) = (0.04, 0.6);
@@ -83,7 +83,7 @@ impl<'a> AxisView<'a> {
         let side = cuts[cuts.len() - 1];
         let noise = NOISE * facade.width.max(facade.height);
         let most = MOST_ACROSS * rows.iter().sum::<f64>();
-        let counted = |p: &&Piece<'a>| !is_background(p.label) && p.across.1 - p.across.0 < most;
+        let counted = |p: &&Piece<'a>| !is_wall(p.label) && p.across.1 - p.across.0 < most;
         let lowest = |row: usize| (cells.iter().map(|column| &pieces[column[row]])).find(counted);
         let fixed = match axis {
             Axis::X => pieces.iter().map(|piece| piece.label).collect(),
@@ -173,7 +173,7 @@ impl<'a> AxisView<'a> {
         };
         let new = self.rows.iter().enumerate().filter(|&(row, _)| {
             let seam = &self.pieces[self.cells[from][row]];
-            is_background(seam.label) && !self.contacts.known(row, first, second)
+            is_wall(seam.label) && !self.contacts.known(row, first, second)
         });
         new.map(|(_, length)| length).sum::<f64>() / self.rows.iter().sum::<f64>()
     }
@@ -193,9 +193,9 @@ impl<'a> AxisView<'a> {
             let length = |piece: &Piece| piece.along.1 - piece.along.0;
             let placed = self.same(a - p.along.0, b - q.along.0) && self.same(length(p), length(q));
             // Panes of one window are no window each.
-            let apart = || (from + 1..to).any(|k| is_background(self.label(k, row)));
+            let apart = || (from + 1..to).any(|k| is_wall(self.label(k, row)));
             let wide = length(p).min(length(q)) >= WIDE * self.side;
-            is_background(p.label) || (level && ((placed && apart()) || (loose && wide)))
+            is_wall(p.label) || (level && ((placed && apart()) || (loose && wide)))
         })
     }
 
@@ -208,7 +208,7 @@ impl<'a> AxisView<'a> {
     fn of_its_own(&self, (a, b): Band) -> f64 {
         let across = |p: &Piece| p.across.1 - p.across.0;
         let inside = |p: &Piece| p.along.0 >= a - self.noise && p.along.1 <= b + self.noise;
-        let counted = |p: &&Piece| !is_background(p.label) && across(p) < self.most_across();
+        let counted = |p: &&Piece| !is_wall(p.label) && across(p) < self.most_across();
         let (within, outside): (Vec<&Piece>, Vec<&Piece>) =
             self.pieces.iter().filter(counted).partition(|p| inside(p));
         let own = (within.iter()).filter(|p| !outside.iter().any(|q| alike(p, q)));
@@ -228,11 +228,7 @@ impl<'a> AxisView<'a> {
     fn repeatable(&self, (a, b): Band) -> bool {
         let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
         let mut any = false;
-        for piece in self
-            .pieces
-            .iter()
-            .filter(|piece| !is_background(piece.label))
-        {
+        for piece in self.pieces.iter().filter(|piece| !is_wall(piece.label)) {
             let count = counts.entry(piece.label).or_default();
             count.0 += 1;
             let inside = piece.along.0 >= a - self.noise && piece.along.1 <= b + self.noise;
