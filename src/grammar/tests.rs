@@ -135,3 +135,52 @@ fn evaluation_rejects_what_does_not_explain_the_input() {
         Err(EvaluateError::Different { index: 0, .. })
     ));
 }
+
+/// What counts as equal grows with the facade: lengths may differ by a millionth of its larger side.
+#[test]
+fn equal_contents_may_differ_by_a_millionth_of_the_facade() {
+    let outcome = |width: f64, difference: f64| {
+        let half = width / 2.0;
+        let rules = vec![
+            rule(
+                "F",
+                split(Axis::X, &[("A", half), ("A", half + difference)]),
+            ),
+            rule("A", split(Axis::Y, &[("wall", 0.5), ("door", 0.5)])),
+        ];
+        let g = grammar(width + difference, 1.0, rules);
+        let facade = derive(&g, 0).unwrap();
+        evaluate(&g, &[facade], &Costs::default())
+    };
+    for width in [1.0, 10.0, 1e3, 1e4] {
+        assert_eq!(outcome(width, 0.5e-6 * width).unwrap().terminals, 4);
+        let different = outcome(width, 2e-6 * width);
+        assert!(
+            matches!(different, Err(EvaluateError::Contents { ref symbol, .. }) if symbol == "A"),
+            "{width}: {different:?}"
+        );
+    }
+}
+
+/// The limit is one of the number of regions: thousands are far from it however they come together.
+#[test]
+fn thousands_of_regions_are_derived() {
+    let tiles = 5_000;
+    let mut row = vec![("Tower", 1.0)];
+    row.resize(1 + tiles, ("Tile", 1.0));
+    let tower = Operation::Repeat {
+        axis: Axis::Y,
+        successors: vec![Successor::new("cell", 1.0)],
+    };
+    let rules = vec![
+        rule("F", split(Axis::X, &row)),
+        rule("Tower", tower),
+        rule(
+            "Tile",
+            split(Axis::Y, &[("wall", 1_000.0), ("window", 1_000.0)]),
+        ),
+    ];
+    let derived = derivation(&grammar(5_001.0, 2_000.0, rules), 0).unwrap();
+    assert_eq!(derived.facade.regions.len(), 2_000 + 2 * tiles);
+    assert_eq!(derived.non_terminals.len(), 2 + tiles);
+}

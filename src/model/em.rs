@@ -237,3 +237,72 @@ pub fn restarts<E: Em>(
     }
     best.ok_or(ModelError::Empty { what: "starts" })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Em, Outcome, Stopping, run};
+    use crate::ModelError;
+
+    /// Log posteriors that a list gives, one round after the other: the model is the place in the list.
+    struct Listed(&'static [f64]);
+
+    impl Em for Listed {
+        type Model = usize;
+        type Stats = usize;
+
+        fn expect(&self, model: &usize) -> Result<(usize, f64), ModelError> {
+            Ok((*model, self.0[*model]))
+        }
+
+        fn maximize(&self, stats: &usize) -> Result<usize, ModelError> {
+            Ok((stats + 1).min(self.0.len() - 1))
+        }
+
+        fn log_prior(&self, _: &usize) -> f64 {
+            0.0
+        }
+
+        fn movement(&self, before: &usize, after: &usize) -> f64 {
+            before.abs_diff(*after) as f64
+        }
+    }
+
+    #[test]
+    fn rounds_that_lose_are_undone_and_rounds_that_gain_nothing_are_not() {
+        let stopping = Stopping {
+            movement: 0.5,
+            ..Stopping::default()
+        };
+        for (listed, outcome, reached) in [
+            // The last model moves no more.
+            (&[-3.0, -2.0, -1.0][..], Outcome::Converged, 2),
+            (&[-3.0, -2.0, -2.0, -1.0], Outcome::Converged, 3),
+            (&[-3.0, -3.0], Outcome::Converged, 1),
+            // A round that loses, and one of which nothing is known.
+            (&[-3.0, -2.0, -2.5, -1.0], Outcome::Stalled, 1),
+            (&[-3.0, -2.0, f64::NAN, -1.0], Outcome::Stalled, 1),
+        ] {
+            let fit = run(&Listed(listed), 0, &stopping).unwrap();
+            assert_eq!((fit.outcome, fit.model), (outcome, reached), "{listed:?}");
+            assert_eq!(fit.log_posterior, listed[reached]);
+        }
+    }
+
+    #[test]
+    fn rounds_end_at_their_number_or_at_a_small_gain() {
+        let listed = Listed(&[-9.0, -5.0, -4.0, -3.5, -3.4, -3.3]);
+        let ended = |gain: f64, max_rounds: usize| {
+            let stopping = Stopping {
+                movement: 0.5,
+                gain,
+                max_rounds,
+            };
+            let fit = run(&listed, 0, &stopping).unwrap();
+            (fit.outcome, fit.model)
+        };
+        assert_eq!(ended(0.0, 3), (Outcome::MaxRounds, 3));
+        assert_eq!(ended(0.7, 100), (Outcome::SmallGain, 3));
+        assert_eq!(ended(0.2, 100), (Outcome::SmallGain, 4));
+        assert_eq!(ended(0.0, 100), (Outcome::Converged, 5));
+    }
+}

@@ -145,3 +145,65 @@ pub(super) fn sum_onto(
     });
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Factor, add, sum_onto};
+    use edifice_base::rng::stream;
+    use rand::RngExt;
+
+    /// Every assignment of some variables of a table, in the order of its cells.
+    fn assignments(vars: &[usize], sizes: &[usize]) -> Vec<Vec<usize>> {
+        let longer = |all: Vec<Vec<usize>>, &v: &usize| {
+            let values = |x: Vec<usize>| {
+                (0..sizes[v]).map(move |value| {
+                    let mut x = x.clone();
+                    x[v] = value;
+                    x
+                })
+            };
+            all.into_iter().flat_map(values).collect()
+        };
+        vars.iter().fold(vec![vec![0; sizes.len()]], longer)
+    }
+
+    /// Sums onto some of a table's variables, and sums with a table over them, cell by cell.
+    #[test]
+    fn tables_are_summed_and_added_cell_by_cell() {
+        let mut rng = stream(1, "tables", 0);
+        for case in 0..300 {
+            let n = rng.random_range(1..=5);
+            let sizes: Vec<usize> = (0..n).map(|_| rng.random_range(1..=3)).collect();
+            let mut scope: Vec<usize> = (0..n).collect();
+            for i in 0..n {
+                scope.swap(i, rng.random_range(0..n));
+            }
+            // Some of the variables, now and then in the order of the table, so that runs of cells move along.
+            let mut vars = scope.clone();
+            if rng.random::<bool>() {
+                vars.sort_unstable();
+            }
+            let from = rng.random_range(0..=n);
+            let vars = &vars[from..];
+            let cells = assignments(&scope, &sizes);
+            let values: Vec<f64> = cells.iter().map(|_| rng.random_range(0.0..1.0)).collect();
+            let alike = |x: &[usize], y: &[usize]| vars.iter().all(|&v| x[v] == y[v]);
+            let inner = assignments(vars, &sizes);
+            let sums = sum_onto(&values, &scope, vars, &sizes);
+            assert_eq!(sums.len(), inner.len());
+            for (sum, y) in sums.iter().zip(&inner) {
+                let here = cells.iter().zip(&values).filter(|(x, _)| alike(x, y));
+                let slow: f64 = here.map(|(_, value)| value).sum();
+                assert!((sum - slow).abs() < 1e-12, "{case}: {sum} is not {slow}");
+            }
+            let factor = Factor::new(vars.to_vec(), sums);
+            let mut added = values.clone();
+            add(&mut added, &scope, &factor, &sizes);
+            for ((x, sum), value) in cells.iter().zip(&added).zip(&values) {
+                let beside = inner.iter().position(|y| alike(x, y)).unwrap();
+                let slow = value + factor.values[beside];
+                assert!((sum - slow).abs() < 1e-12, "{case}: {sum} is not {slow}");
+            }
+        }
+    }
+}

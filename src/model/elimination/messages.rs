@@ -140,3 +140,87 @@ fn normal(mut logs: Vec<f64>) -> Vec<f64> {
     logs.iter_mut().for_each(|l| *l -= total);
     logs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Factor, Messages};
+    use edifice_base::rng::{Stream, stream};
+    use rand::RngExt;
+
+    /// Factors of a random tree over all variables: of each with an earlier one, and of some alone. None is normalised.
+    fn tree(sizes: &[usize], rng: &mut Stream) -> Vec<Factor> {
+        let mut factors = Vec::new();
+        for v in 0..sizes.len() {
+            let mut scopes = Vec::new();
+            if v > 0 {
+                let earlier = rng.random_range(0..v);
+                scopes.push(match rng.random::<bool>() {
+                    true => vec![v, earlier],
+                    false => vec![earlier, v],
+                });
+            }
+            if rng.random::<bool>() {
+                scopes.push(vec![v]);
+            }
+            for vars in scopes {
+                let cells: usize = vars.iter().map(|&v| sizes[v]).product();
+                let values = (0..cells).map(|_| rng.random_range(-3.0..4.0));
+                factors.push(Factor::new(vars, values.collect()));
+            }
+        }
+        factors
+    }
+
+    /// The sum of the products of all factors, and its parts by the value of each variable.
+    fn enumerated(factors: &[Factor], sizes: &[usize]) -> (f64, Vec<Vec<f64>>) {
+        let mut total = 0.0;
+        let mut parts: Vec<Vec<f64>> = sizes.iter().map(|&k| vec![0.0; k]).collect();
+        for number in 0..sizes.iter().product() {
+            let mut rest: usize = number;
+            let digits = sizes.iter().map(|k| {
+                let digit = rest % k;
+                rest /= k;
+                digit
+            });
+            let x: Vec<usize> = digits.collect();
+            let value = |f: &Factor| match f.vars[..] {
+                [v] => f.values[x[v]],
+                [v, w] => f.values[x[v] * sizes[w] + x[w]],
+                _ => panic!("{f:?} is of no variable or of many"),
+            };
+            let product = factors.iter().map(value).sum::<f64>().exp();
+            total += product;
+            for (part, &value) in parts.iter_mut().zip(&x) {
+                part[value] += product;
+            }
+        }
+        (total, parts)
+    }
+
+    #[test]
+    fn on_trees_beliefs_and_the_partition_function_are_those_of_enumeration() {
+        let mut rng = stream(1, "trees", 0);
+        for case in 0..100 {
+            let n = rng.random_range(2..=6);
+            let sizes: Vec<usize> = (0..n).map(|_| rng.random_range(1..=3)).collect();
+            let factors = tree(&sizes, &mut rng);
+            let mut messages = Messages::new(&factors, &sizes);
+            let moved = (0..200).map(|_| messages.round()).last().unwrap();
+            assert!(moved < 1e-12, "{case}: {moved}");
+            let (total, parts) = enumerated(&factors, &sizes);
+            let found = messages.log_partition();
+            assert!(
+                (found - total.ln()).abs() < 1e-9,
+                "{case}: {found} is not {}",
+                total.ln()
+            );
+            for (v, parts) in parts.iter().enumerate() {
+                assert!(!messages.is_free(v));
+                let belief = messages.belief(v).unwrap();
+                for (b, p) in belief.iter().zip(parts) {
+                    assert!((b - p / total).abs() < 1e-9, "{case}: {b} of {v}");
+                }
+            }
+        }
+    }
+}

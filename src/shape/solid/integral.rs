@@ -166,3 +166,43 @@ fn section(columns: &[Column], segments: &[Segment], x: f64) -> f64 {
     }
     area
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Segment, crossing};
+    use edifice_base::rng::stream;
+    use rand::RngExt;
+
+    /// Segments drawn through a point, each so far before and behind it, cross there; cut off before it they do not cross.
+    #[test]
+    fn segments_through_a_point_cross_there() {
+        let mut rng = stream(1, "crossing", 0);
+        for case in 0..1_000 {
+            let mut draw = |low: f64, high: f64| rng.random_range(low..high);
+            let place = [draw(-9.0, 9.0), draw(-9.0, 9.0)];
+            let turn = draw(0.0, 3.0);
+            let turns = [turn, turn + draw(0.1, 3.0)];
+            let mut through = |angle: f64, from: f64, to: f64| -> Segment {
+                let (a, b) = (draw(from, from + 3.0), draw(to, to + 3.0));
+                let point = |t: f64| [place[0] + t * angle.cos(), place[1] + t * angle.sin()];
+                [point(a), point(b)]
+            };
+            let [s, t] = turns.map(|angle| through(angle, -3.01, 0.01));
+            let short = through(turns[1], 0.01, 3.02);
+            for (s, t) in [(&s, &t), (&t, &s)] {
+                let x = crossing(s, t).unwrap();
+                assert!((x - place[0]).abs() < 1e-9, "{case}: {x} is not {place:?}");
+            }
+            assert_eq!(crossing(&s, &short), None, "{case}");
+            assert_eq!(crossing(&short, &s), None, "{case}");
+        }
+    }
+
+    #[test]
+    fn parallel_segments_do_not_cross() {
+        let s = [[0.0, 0.0], [2.0, 1.0]];
+        for t in [s, [[1.0, 0.5], [3.0, 1.5]], [[0.0, 1.0], [4.0, 3.0]]] {
+            assert_eq!(crossing(&s, &t), None);
+        }
+    }
+}

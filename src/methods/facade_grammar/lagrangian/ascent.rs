@@ -193,7 +193,54 @@ fn onto_simplex(point: &mut [f64], total: f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::onto_simplex;
+    use super::super::tests::{program_of_many_steps, programs_of_small_facades};
+    use super::{Direction, Dual, Incumbent, onto_simplex};
+    use crate::operations::Operations;
+    use edifice_grammar::Costs;
+
+    /// Each step looks at the items of all occurrences; steps end before one would look at more than is allowed, but
+    /// for the first.
+    #[test]
+    fn steps_look_at_no_more_items_than_they_may() {
+        let program = &program_of_many_steps();
+        let items = program.items as u64;
+        // Nothing divides these costs, so that no bound is rounded up and all steps are made.
+        let costs = Costs {
+            split: 2f64.sqrt(),
+            ..Costs::default()
+        };
+        for (allowed, left) in [
+            (0, 0),
+            (items, 0),
+            (3 * items, 0),
+            (3 * items + 1, 1),
+            (4 * items - 1, items - 1),
+        ] {
+            let mut incumbent = Incumbent::new(f64::INFINITY, &costs, Operations::default());
+            let mut work = allowed;
+            Dual::new(program).ascend(&mut incumbent, 1_000, &mut work);
+            assert_eq!(work, left, "of {allowed}");
+        }
+    }
+
+    /// Seven tenths of a direction are kept at each turn, until nothing worth a step is left.
+    #[test]
+    fn a_direction_fades_and_is_forgotten() {
+        let programs = programs_of_small_facades();
+        let dual = Dual::new(&programs[0]);
+        let mut direction = Direction::from([((0, 0), vec![0.5, -0.5]), ((0, 1), vec![0.0, 0.0])]);
+        dual.turn(&mut direction, &[]);
+        assert_eq!(direction, Direction::from([((0, 0), vec![0.35, -0.35])]));
+        for _ in 0..20 {
+            dual.turn(&mut direction, &[]);
+        }
+        let kept = direction[&(0, 0)][0];
+        assert!((kept - 0.5 * 0.7_f64.powi(21)).abs() < 1e-12, "{kept}");
+        for _ in 0..20 {
+            dual.turn(&mut direction, &[]);
+        }
+        assert!(direction.is_empty());
+    }
 
     #[test]
     fn projections_are_points_of_the_simplex() {

@@ -283,8 +283,39 @@ fn last_least(bounds: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator) 
 
 #[cfg(test)]
 mod tests {
-    use super::last_least;
+    use super::super::tests::programs_of_small_facades;
+    use super::{Ascent, last_least, undecided_type};
     use proptest::prelude::*;
+
+    /// Shares of the steps that used an item are halves in doubt and wholes in none; the type of most doubt is decided first.
+    #[test]
+    fn the_type_that_steps_were_least_sure_of_is_decided() {
+        let program = &programs_of_small_facades()[0];
+        let open: Vec<u32> = (0..program.region_types.len() as u32)
+            .filter(|&index| {
+                let known = &program.region_types[index as usize];
+                known.occurrences.iter().all(|o| !program.roots.contains(o))
+            })
+            .collect();
+        let decided = |usage: &[(u32, f64)], last: u32| {
+            let operation = |index: u32| program.region_types[index as usize].operation(0);
+            let usage = usage
+                .iter()
+                .map(|&(index, share)| ((index, operation(index)), share));
+            let found = Ascent {
+                bound: 0.0,
+                usage: usage.collect(),
+                items: vec![(last, 0)],
+            };
+            undecided_type(program, &found)
+        };
+        let [a, b, c] = [open[0], open[1], open[2]];
+        assert_eq!(decided(&[(a, 0.9), (b, 0.6), (c, 0.2)], a), Some(b));
+        assert_eq!(decided(&[(a, 0.1), (b, 0.96), (c, 0.92)], b), Some(a));
+        // Where all types are almost certain, one of the last derivation.
+        assert_eq!(decided(&[(a, 0.02), (b, 0.99)], c), Some(c));
+        assert_eq!(decided(&[], b), Some(b));
+    }
 
     proptest! {
         #[test]

@@ -9,6 +9,7 @@ mod gmm;
 mod gmm_missing;
 mod gmm_round;
 mod hierarchy;
+mod hierarchy_fits;
 mod learning;
 mod network;
 mod program;

@@ -2,6 +2,7 @@
 
 mod crossings;
 mod exact;
+mod finishes;
 mod openings;
 
 use std::collections::BTreeSet;

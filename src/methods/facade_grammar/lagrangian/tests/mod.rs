@@ -1,3 +1,4 @@
+mod dual;
 mod linear_program;
 
 use super::dual::Dual;
@@ -289,7 +290,15 @@ fn items_of_rules(known: &region_type::RegionType) -> Vec<Vec<usize>> {
     found
 }
 
-fn programs_of_small_facades() -> Vec<Program> {
+/// A program that takes many steps to bound.
+pub(super) fn program_of_many_steps() -> Program {
+    let types = Types::new(&[facade(&["abcabd", "bacabd", "abcabd", "cabdab"])]).unwrap();
+    let watched = Watched::new(&unwatched);
+    let (costs, operations) = (Costs::default(), Operations::default());
+    Program::new(types, &costs, operations, usize::MAX, &watched).unwrap()
+}
+
+pub(super) fn programs_of_small_facades() -> Vec<Program> {
     let facades = [facade(&["abab", "cdcd"]), facade(&["abcba", "abcba"])];
     let program = |facade| {
         let types = Types::new(&[facade]).unwrap();
