@@ -287,7 +287,7 @@ mod tests {
     use super::{Ascent, last_least, undecided_type};
     use proptest::prelude::*;
 
-    /// Shares of the steps that used an item are halves in doubt and wholes in none; the type of most doubt is decided first.
+    /// A type used in half of the steps is in doubt, one used in all or in none is not; the one of most doubt is decided first.
     #[test]
     fn the_type_that_steps_were_least_sure_of_is_decided() {
         let program = &programs_of_small_facades()[0];
