@@ -46,7 +46,7 @@ const SEEN: [&str; 17] = [
     "roof.hip",
 ];
 
-/// Where the houses come from that are to be told from real ones.
+/// The origin of the houses that are to be told from real ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Source {
     /// Other real houses.

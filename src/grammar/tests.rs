@@ -136,7 +136,7 @@ fn evaluation_rejects_what_does_not_explain_the_input() {
     ));
 }
 
-/// What counts as equal grows with the facade: lengths may differ by a millionth of its larger side.
+/// The tolerance grows with the facade: lengths may differ by a millionth of its larger side.
 #[test]
 fn equal_contents_may_differ_by_a_millionth_of_the_facade() {
     let outcome = |width: f64, difference: f64| {

@@ -1,4 +1,4 @@
-//! What stands beside what along an axis, and how far apart.
+//! Elements that stand beside each other along an axis, and how far apart.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What occurrences pay for items, and what is left to be split by multipliers where a type is required.
+//! The multipliers that occurrences pay for items, and the costs that are left for them to split where a type is required.
 
 use super::*;
 
