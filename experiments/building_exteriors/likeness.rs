@@ -1,5 +1,7 @@
 //! The ease with which a classifier tells drawn houses from real ones that no model has seen.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::averages::mean_and_error;
@@ -8,7 +10,7 @@ use crate::Context;
 use crate::roc::area_under_curve;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result, unwatched};
-use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
+use edifice_building_exteriors::attributes::AttributeRow;
 use edifice_building_exteriors::coding::{Coding, Observation, attribute_rows, coded};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::model_file::ModelFile;
@@ -25,26 +27,8 @@ const STYLES: usize = 6;
 const KINDS: usize = 4;
 /// Folds of the classifier.
 const FOLDS: usize = 5;
-/// Mass and roof, which are measured of houses of city models.
-const SEEN: [&str; 17] = [
-    "bbox.w",
-    "bbox.d",
-    "bbox.h",
-    "bcr",
-    "bdry",
-    "far",
-    "arf.0",
-    "arf.1",
-    "arf.2",
-    "garage.x",
-    "garage.y",
-    "garage.w",
-    "garage.d",
-    "garage.h",
-    "roof.flat",
-    "roof.gable",
-    "roof.hip",
-];
+/// Columns of mass and roof, which are measured of houses of city models: from `bbox.w` to `garage.h`, and the three kinds of roofs.
+const SEEN: [Range<usize>; 2] = [0..14, 39..42];
 
 /// The origin of the houses that are to be told from real ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -223,10 +207,9 @@ fn draws(model: &ModelFile, count: usize, seed: u64, index: u64) -> Result<Vec<A
 
 /// The area under the curve of boosted trees, over all folds.
 fn told_apart(drawn: &[AttributeRow], real: &[AttributeRow]) -> Result<f64> {
-    let places = SEEN.map(|name| COLUMNS.iter().position(|c| *c == name));
     let features = |row: &AttributeRow| -> Vec<f64> {
-        let cells = places.iter().flatten();
-        cells.map(|&c| row[c].unwrap_or(0.0)).collect()
+        let columns = SEEN.into_iter().flatten();
+        columns.map(|c| row[c].unwrap_or(0.0)).collect()
     };
     let (drawn, real): (Vec<_>, Vec<_>) = (
         drawn.iter().map(features).collect(),
