@@ -230,7 +230,7 @@ fn fan_and_wonka_models_1_to_3() {
     // The study learns the models as published; the artefact has them without and with a background.
     let published = rows
         .into_iter()
-        .filter(|(key, _)| key[4] == "nll_without_background");
+        .filter(|(key, _)| key[0] == "shipped" && key[4] == "nll_without_background");
     let rows: Vec<_> = published.collect();
     assert_eq!(rows.len(), 5);
     for ([_, model, split, ..], value) in rows {
