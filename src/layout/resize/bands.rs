@@ -18,8 +18,9 @@
 //! - New is the share of the facade across where a new seam brings two elements together, with background between, that
 //!   are neighbours nowhere, or nowhere as close. Little of it may be new.
 //! - Most elements of a band stand elsewhere too, in about their size: an attic is not repeated like a floor.
-//!   A band that has all regions of a label (the door) is left alone.
-//! - Floors are as long as a pitch of windows where a band of that length fits, and never shorter: a floor comes with its cornice.
+//!   A column that has all regions of a label is left alone, as is a floor that has all of one that stands lowest (the door).
+//! - Floors are as long as elements of one label and about one size follow each other, where a band of that length fits, and not
+//!   shorter than the least such pitch: a floor comes with its cornice.
 //!
 //! Where no such bands bring the scale within [`SCALE`], seams may also cross wide regions of one label and one place across,
 //! a shop window, that become longer or shorter by that; their labels are told ([`Banded::cut`]).
@@ -71,7 +72,8 @@ pub struct Banded {
 /// [`BandsError`] when the facade is no tiling, or when it is to become more than [`MOST_TIMES`] times as large along an axis.
 ///
 /// # Complexity
-/// O(c^2 r) for c columns and r rows of cuts, and O(n log n) for each band that is tried, for n regions.
+/// O(c^2 r) for c columns and r rows of cuts, O(n^2) for the pitches and for each of the at most O(c^2) bands that pass the other
+/// tests (O(n) where most elements have their like nearby), and O(n log n) for each step of each band, for n regions.
 pub fn resized(own: &Facade, width: f64, height: f64) -> Result<Banded, BandsError> {
     let mut out = Banded {
         facade: own.clone(),

@@ -56,8 +56,8 @@ impl<'a> Contacts<'a> {
         out
     }
 
-    /// True if two labels that come beside each other do so already, and no closer, or if there are none in the row, where the background that `first` (a column and a
-    /// place in it) crosses is joined to that of `second`.
+    /// True if, where the background that `first` (a column and a place in it) crosses is joined to that of `second`, two labels
+    /// come beside each other that do so already, and no closer; also where the row has no element on either side.
     pub(super) fn known(&self, row: usize, first: (usize, f64), second: (usize, f64)) -> bool {
         let (before, end) = self.before[row][first.0];
         let (after, start) = self.after[row][second.0];

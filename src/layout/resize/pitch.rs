@@ -8,7 +8,7 @@ use super::in_line::{Piece, is_wall};
 const SIZE: f64 = 0.1;
 
 /// True if two elements have one label and about one size.
-pub(super) fn alike(p: &Piece, q: &Piece) -> bool {
+pub(super) fn of_one_kind(p: &Piece, q: &Piece) -> bool {
     let length = |ends: (f64, f64)| ends.1 - ends.0;
     let near = |a, b| (length(a) / length(b)).ln().abs() < SIZE;
     p.label == q.label && near(p.along, q.along) && near(p.across, q.across)
@@ -27,7 +27,7 @@ pub(super) fn pitches<'a>(pieces: &[Piece<'a>], noise: f64) -> BTreeMap<&'a str,
     for p in pieces.iter().filter(|p| !is_wall(p.label)) {
         let after = pieces
             .iter()
-            .filter(|q| alike(p, q) && q.along.0 >= p.along.1 + noise && beside(p, q))
+            .filter(|q| of_one_kind(p, q) && q.along.0 >= p.along.1 + noise && beside(p, q))
             .min_by(|a, b| a.along.0.total_cmp(&b.along.0));
         let Some(q) = after else { continue };
         let between = |r: &Piece| {

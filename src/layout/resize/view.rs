@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::apply::Band;
 use super::contacts::Contacts;
 use super::in_line::{Piece, is_wall};
-use super::pitch::{alike, pitches};
+use super::pitch::{of_one_kind, pitches};
 use edifice_shape::{Axis, Facade};
 
 /// Shortest and longest band, as shares of the side.
@@ -14,7 +14,7 @@ const BAND: (f64, f64) = (0.04, 0.6);
 /// Least length of a region through which a seam may go if it must, as a share of the side.
 const WIDE: f64 = 0.07;
 
-/// Elements across more than this share of the facade are no windows.
+/// Regions across more than this share of the facade are cornices and the like.
 const MOST_ACROSS: f64 = 0.5;
 
 /// Greatest share of a band's elements that stand nowhere else.
@@ -49,6 +49,7 @@ pub(super) struct AxisView<'a> {
     fixed: BTreeSet<&'a str>,
     /// The lengths of the rows, across.
     rows: Vec<f64>,
+    length_across: f64,
     pub(super) side: f64,
     pub(super) noise: f64,
 }
@@ -82,9 +83,11 @@ impl<'a> AxisView<'a> {
         }
         let side = cuts[cuts.len() - 1];
         let noise = NOISE * facade.width.max(facade.height);
-        let most = MOST_ACROSS * rows.iter().sum::<f64>();
-        let counted = |p: &&Piece<'a>| !is_wall(p.label) && p.across.1 - p.across.0 < most;
-        let lowest = |row: usize| (cells.iter().map(|column| &pieces[column[row]])).find(counted);
+        let length_across = rows.iter().sum::<f64>();
+        let lowest = |row: usize| {
+            let upwards = cells.iter().map(|column| &pieces[column[row]]);
+            upwards.into_iter().find(|p| is_element(p, length_across))
+        };
         let fixed = match axis {
             Axis::X => pieces.iter().map(|piece| piece.label).collect(),
             Axis::Y => (0..rows.len())
@@ -104,6 +107,7 @@ impl<'a> AxisView<'a> {
             cuts,
             cells,
             rows,
+            length_across,
             side,
             noise,
         })
@@ -175,7 +179,7 @@ impl<'a> AxisView<'a> {
             let seam = &self.pieces[self.cells[from][row]];
             is_wall(seam.label) && !self.contacts.known(row, first, second)
         });
-        new.map(|(_, length)| length).sum::<f64>() / self.rows.iter().sum::<f64>()
+        new.map(|(_, length)| length).sum::<f64>() / self.length_across
     }
 
     /// True if the facade is the same along both seams.
@@ -203,41 +207,39 @@ impl<'a> AxisView<'a> {
         self.pieces[self.cells[column][row]].label
     }
 
-    /// The share of a band's elements, by their length across, that have none of their label and about their size ([`alike`]) outside: an attic
-    /// is no floor like others. Elements across most of the facade, its cornices, do not count.
-    fn of_its_own(&self, (a, b): Band) -> f64 {
-        let across = |p: &Piece| p.across.1 - p.across.0;
-        let inside = |p: &Piece| p.along.0 >= a - self.noise && p.along.1 <= b + self.noise;
-        let counted = |p: &&Piece| !is_wall(p.label) && across(p) < self.most_across();
+    fn is_inside(&self, piece: &Piece, (a, b): Band) -> bool {
+        piece.along.0 >= a - self.noise && piece.along.1 <= b + self.noise
+    }
+
+    /// The share of a band's elements, by their length across, that have none of their label and about their size outside: an attic
+    /// is no floor like others.
+    fn of_its_own(&self, band: Band) -> f64 {
+        let elements = self
+            .pieces
+            .iter()
+            .filter(|p| is_element(p, self.length_across));
         let (within, outside): (Vec<&Piece>, Vec<&Piece>) =
-            self.pieces.iter().filter(counted).partition(|p| inside(p));
-        let own = (within.iter()).filter(|p| !outside.iter().any(|q| alike(p, q)));
-        let all = within.iter().map(|p| across(p)).sum::<f64>();
-        if all > 0.0 {
-            own.map(|p| across(p)).sum::<f64>() / all
-        } else {
-            0.0
-        }
+            elements.partition(|p| self.is_inside(p, band));
+        let own = (within.iter()).filter(|p| !outside.iter().any(|q| of_one_kind(p, q)));
+        let own: f64 = own.map(|p| p.across.1 - p.across.0).sum();
+        let all: f64 = within.iter().map(|p| p.across.1 - p.across.0).sum();
+        if all > 0.0 { own / all } else { 0.0 }
     }
 
-    fn most_across(&self) -> f64 {
-        MOST_ACROSS * self.rows.iter().sum::<f64>()
-    }
-
-    /// True if a band has elements beside cornices, of no label all that is [`fixed`](Self::fixed), and floors are as long as any.
-    fn repeatable(&self, (a, b): Band) -> bool {
+    /// True if a band has elements, not all of a label that is [`fixed`](Self::fixed), and is not shorter than floors are.
+    fn repeatable(&self, band: Band) -> bool {
         let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
         let mut any = false;
         for piece in self.pieces.iter().filter(|piece| !is_wall(piece.label)) {
+            let inside = self.is_inside(piece, band);
             let count = counts.entry(piece.label).or_default();
             count.0 += 1;
-            let inside = piece.along.0 >= a - self.noise && piece.along.1 <= b + self.noise;
             count.1 += usize::from(inside);
             // Not every floor has a cornice.
-            if inside && piece.across.1 - piece.across.0 < self.most_across() {
+            if inside && is_element(piece, self.length_across) {
                 any = true;
                 let pitch = self.pitch.get(piece.label).unwrap_or(&0.0);
-                if b - a < CLOSEST * pitch {
+                if band.1 - band.0 < CLOSEST * pitch {
                     return false;
                 }
             }
@@ -247,4 +249,9 @@ impl<'a> AxisView<'a> {
         };
         any && !counts.iter().any(all)
     }
+}
+
+/// True for what is neither wall nor across most of the facade, as cornices are.
+fn is_element(piece: &Piece, length_across: f64) -> bool {
+    !is_wall(piece.label) && piece.across.1 - piece.across.0 < MOST_ACROSS * length_across
 }
