@@ -218,7 +218,7 @@ fn draws(model: &ModelFile, count: usize, seed: u64, index: u64) -> Result<Vec<A
     Ok(attribute_rows(&drawn.table))
 }
 
-/// What is said of the draws of one split.
+/// The judgement of the draws of one split.
 #[derive(Serialize, Deserialize)]
 struct Judged {
     /// Area under the curve of the classifier.
