@@ -22,6 +22,7 @@ mod recovery;
 mod scaling;
 pub mod study;
 mod table_1;
+mod town_plan;
 
 use super::{Artefact, Experiment};
 
@@ -78,6 +79,11 @@ const ARTEFACTS: &[Artefact] = &[
         name: "new_squares",
         title: "squares of new cities beside those of the old",
         run: new_squares::run,
+    },
+    Artefact {
+        name: "town_plan",
+        title: "districts, blocks and rows of a city's grammar",
+        run: town_plan::run,
     },
     Artefact {
         name: "figure_10",

@@ -103,7 +103,8 @@ pub(crate) fn judge(
 /// A derived city, and the symbol of each building under the axiom.
 fn typed(grammar: &InstanceGrammar) -> (City, Vec<String>) {
     let derivation = grammar.derive().unwrap_or_default();
-    let axiom = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
+    let flat = grammar.flat(None);
+    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
     let symbols: BTreeMap<&str, &str> = (axiom.iter().flat_map(|r| &r.successors))
         .filter_map(|s| Some((s.id.as_deref()?, s.symbol.as_str())))
         .collect();

@@ -198,7 +198,8 @@ fn copied_pairs(old: &InstanceGrammar, new: &InstanceGrammar) -> f64 {
 
 /// Pairs of buildings that stand together: their types, and the distance of their origins in steps of 0.1 m.
 fn pairs(grammar: &InstanceGrammar) -> Vec<(String, String, i64)> {
-    let axiom = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
+    let flat = grammar.flat(None);
+    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
     let mut placed: Vec<(&str, [f64; 3])> = axiom
         .into_iter()
         .flat_map(|r| &r.successors)

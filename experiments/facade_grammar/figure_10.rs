@@ -8,7 +8,7 @@ use edifice_report::{Figure, Row};
 /// Shows every shipped facade with its number of terminals.
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let facades = data::shipped(ctx)?;
-    let mut figure = Figure::new("the shipped facades", 7).cell(210.0, 250.0);
+    let mut figure = Figure::new("the shipped facades", 7).cell(150.0, 180.0);
     for facade in &facades {
         let terminals = facade.regions.len();
         let caption = format!("{terminals} terminals");

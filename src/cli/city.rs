@@ -41,12 +41,15 @@ Reads .npz, .obj, .city.json, .city.jsonl (z up), .glb and .gltf (y up), in metr
   edifice city convert town.cga -o evaluated.obj
 OBJ and CityJSON are z up, in metres; glTF is y up.")]
     Derive(derive::Args),
-    /// Change sizes of templates and weights of rules.
+    /// Change sizes of types of buildings, places of blocks and rows, and weights of rules.
     #[command(after_help = "Examples:
   edifice city edit town.city-grammar.json 'scale B1=1,1,1.5' -o taller.city-grammar.json
+  edifice city edit town.city-grammar.json 'move K1=0,-4,0' 'turn K2=3' 'remove K3' -o moved.city-grammar.json
   edifice city edit town.city-grammar.json 'scale B*=1,1,1.5' 'scale T1=1,1,1.5' -o taller.city-grammar.json
 Edits, made in turn: scale NAME=FX,FY,FZ (factors of width, depth and height of a type of building, B1 or E1, or of a template,
-T1, wherever it stands; NAME may end in * for all names that begin so); weight RULE=W, the rules counted from 0 as in the file.
+T1, wherever it stands; NAME may end in * for all names that begin so); move NAME=DX,DY,DZ and turn NAME=DEGREES (districts D1, blocks
+K1 and rows R1; in metres, and about the place of its first building); remove NAME (a row closes up); weight RULE=W, the rules
+counted from 0 as in the file.
 Residuals are carried along, or left out with --residuals drop.")]
     Edit(edit::Args),
     /// Write a city in another format.
@@ -111,6 +114,7 @@ are submitted again by the same command.")]
     /// Draw a city or a grammar.
     #[command(after_help = "Examples:
   edifice city draw town.city-grammar.json --beside town.obj -o town.png
+  edifice city draw town.city-grammar.json --colour row --plan -o rows.png
   edifice city draw town.city-grammar.json --colour type --plan --at 40,40 --radius 60 --size 800x800 -o types.png")]
     Draw(draw::Args),
 }

@@ -21,7 +21,7 @@
 //! | | `straighten` | `corners` of the facade in a photograph, four `[x, y]` in pixels, upper left first, clockwise; `picture` as above, or null for the one that was opened; `height` in metres for a new outline, or null | `facade straighten` |
 //! | `grammar` | `edit` | `edits` (`resize RULE.PART=SIZE`, `border RULE.PART=SHIFT`, `symbol RULE.PART=NAME`, `insert RULE.PART=NAME:SIZE`, `insert RULE.PART=SIZE`, `remove RULE.PART`, `grow RULE.PART`, `shrink RULE.PART`, `repeat RULE`, `weight RULE=W`, `outline W,H`; PART is a part `0`, a column `c0` or a row `r0` of a grid) | `grammar edit` |
 //! | | `merge` | `facades`, the texts of `.facade.json` files | `grammar merge` |
-//! | `city` | `edit` | `edits` (`scale TEMPLATE=FX,FY,FZ`, `weight RULE=W`) | `city edit` |
+//! | `city` | `edit` | `edits` (`scale NAME=FX,FY,FZ`, `move NAME=DX,DY,DZ`, `turn NAME=DEGREES`, `remove NAME`, `weight RULE=W`) | `city edit` |
 //! | | `synthesize` | `polygon`, `seed` | `city synthesize` |
 //! | | `proceduralize` | `level` | `city proceduralize` |
 

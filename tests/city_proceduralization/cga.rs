@@ -103,10 +103,9 @@ fn an_attribute_changes_the_buildings_that_do_not_state_it() {
     cga::write(&grammar, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let before = measures(&cga::read(&path).unwrap());
-    let axiom = grammar
-        .rules
-        .iter()
-        .find(|r| r.symbol == grammar.axiom)
+    let flat = grammar.flat(None);
+    let axiom = (flat.rules.iter())
+        .find(|r| r.symbol == flat.axiom)
         .unwrap();
     let shapes = std::fs::read_to_string(folder.path().join("city.shapes.geojson")).unwrap();
     let shapes: serde_json::Value = serde_json::from_str(&shapes).unwrap();

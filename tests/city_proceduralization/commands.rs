@@ -207,7 +207,7 @@ fn bad_input_names_file_and_element_and_writes_nothing() {
         (
             "symbol",
             whole.replacen("\"symbol\":\"B", "\"symbol\":\"Q", 1),
-            "rules[0].successors[0]",
+            "unknown symbol \"B",
         ),
         (
             "size",

@@ -198,7 +198,7 @@ fn any(rng: &mut Stream, fine: bool) -> InstanceGrammar {
     grammar
 }
 
-/// Makes a rule over templates, now and then, one with parameters, or with factors.
+/// Makes a rule over templates, now and then, one with parameters, or with factors, or a row.
 fn parametrize(rng: &mut Stream, rule: &mut InstanceRule, templates: &[Template]) {
     let terminal = |p: &Placement| templates.iter().any(|t| t.symbol == p.symbol);
     if !rule.successors.iter().all(terminal) || rng.random_bool(0.5) {
@@ -208,6 +208,7 @@ fn parametrize(rng: &mut Stream, rule: &mut InstanceRule, templates: &[Template]
     if rng.random_bool(0.3) {
         rule.scale = [1.0, 0.1, 1.5];
     }
+    rule.row = rule.levels == 0 && rule.is_unscaled();
     if rule.levels > 0 {
         for s in &mut rule.successors {
             let share = |rng: &mut Stream| f64::from(rng.random_range(1..2000)) / 1024.0;

@@ -1,11 +1,17 @@
 //! Rules with parameters: what they compute, what is left of a city by the rules alone, and what an edit of a type moves.
 
-use edifice::grammar::instance::{InstanceGrammar, InstanceRule, Placement, Template};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use edifice::grammar::instance::{
+    Grid, InstanceGrammar, InstanceRule, Placement, Template, TemplateInstance,
+};
 use edifice::io::city::{compact, grammar_json};
+use edifice::methods::city_proceduralization::arrangement::arrange;
 use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proceduralize};
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
 use edifice::unwatched;
-use edifice_editing::city_proceduralization::edit;
+use edifice_editing::city_proceduralization::{CityEdit, edit};
 use edifice_generators::city_proceduralization as synthetic;
 
 fn made(city: &City, budget: Budget) -> InstanceGrammar {
@@ -200,13 +206,143 @@ fn edits_of_types_scale_what_they_name() {
         .clone();
     let wider = edit(&grammar, &edits(&[&format!("scale {first}=2,1,1")]), true).unwrap();
     let (a, b) = (derived(&grammar), derived(&wider));
-    let axiom = &grammar.rules[0].successors;
+    let axiom = &grammar.flat(None).rules[0].successors;
     for (k, placed) in axiom.iter().enumerate() {
         let ratio = volume(&single(&b, k)) / volume(&single(&a, k));
         let expected = if placed.symbol == first { 2.0 } else { 1.0 };
         assert!((ratio - expected).abs() < 0.02, "{} {ratio}", placed.symbol);
     }
     assert!(edit(&grammar, &edits(&["scale Q7=1,1,2"]), true).is_err());
+}
+
+/// The building of a placed template, its place and its turn.
+type Stands = (String, ([f64; 3], f64));
+
+#[test]
+fn blocks_and_rows_are_moved_turned_and_taken_away() {
+    let (city, _) = synthetic::city(30, 0.03, 7);
+    let grammar = made(&city, Budget::Level(3));
+    let block = (grammar.rules.iter())
+        .find(|r| r.symbol.starts_with('K'))
+        .unwrap();
+    let apply = |text: &str| {
+        let asked: CityEdit = text.parse().ok()?;
+        edit(&grammar, &[asked], true).ok()
+    };
+    let places = |g: &InstanceGrammar| {
+        let derivation = g.derive().unwrap();
+        let of = |i: &TemplateInstance| {
+            let id = i.building.map(|b| derivation.buildings[b].0.clone());
+            (id.unwrap(), (i.at, i.turn))
+        };
+        derivation.instances.iter().map(of).collect::<Vec<_>>()
+    };
+    let before = places(&grammar);
+    // Moved: those of the block, by as much, and no others.
+    let inside = {
+        let mut only = grammar.clone();
+        only.axiom.clone_from(&block.symbol);
+        let all = places(&only);
+        all.into_iter().map(|p| p.0).collect::<BTreeSet<_>>()
+    };
+    let moved = places(&apply(&format!("move {}=10,-4,1", block.symbol)).unwrap());
+    for ((id, (a, _)), (other, (b, _))) in before.iter().zip(&moved) {
+        let expected = if inside.contains(id) {
+            [10.0, -4.0, 1.0]
+        } else {
+            [0.0; 3]
+        };
+        assert_eq!(id, other);
+        assert!(
+            (0..3).all(|k| (b[k] - a[k] - expected[k]).abs() < 1e-9),
+            "{id}"
+        );
+    }
+    // Turned by a full circle it stands where it stood, by a right angle it does not.
+    let turned =
+        |degrees: &str| places(&apply(&format!("turn {}={degrees}", block.symbol)).unwrap());
+    let apart = |found: &[Stands]| {
+        let far = |(a, b): (&Stands, &Stands)| (a.1.0[0] - b.1.0[0]).hypot(a.1.0[1] - b.1.0[1]);
+        before.iter().zip(found).map(far).fold(0.0, f64::max)
+    };
+    assert!(apart(&turned("360")) < 1e-6 && apart(&turned("90")) > 3.0);
+    // Taken away: a block with its buildings, a type wherever it stands, residuals with their parts.
+    let less = places(&apply(&format!("remove {}", block.symbol)).unwrap());
+    let ids = |all: &[Stands]| all.iter().map(|p| p.0.clone()).collect::<BTreeSet<_>>();
+    let left: BTreeSet<String> = ids(&before).difference(&inside).cloned().collect();
+    assert_eq!(ids(&less), left);
+    let flat = grammar.flat(None);
+    let kind = &flat.rules[0].successors[0].symbol;
+    let of_kind = (flat.rules[0].successors.iter()).filter(|s| s.symbol == *kind);
+    let none = apply(&format!("remove {kind}")).unwrap();
+    assert_eq!(
+        ids(&places(&none)).len(),
+        ids(&before).len() - of_kind.count()
+    );
+    assert!(apply("remove T1").is_some());
+    for text in [
+        "move B1=1,0,0",
+        "turn Q1=3",
+        "remove Q1",
+        "remove City",
+        "turn K1=inf",
+    ] {
+        assert!(apply(text).is_none(), "{text}");
+    }
+}
+
+#[test]
+fn a_row_closes_up_and_makes_room() {
+    let cube = Template {
+        symbol: "T1".to_owned(),
+        mesh: TriangleMesh::default(),
+        texture: None,
+    };
+    let house = |k: usize| {
+        let kind = if k == 2 { "B2" } else { "B1" };
+        let mut placed = Placement::new(kind, [6.0 * k as f64, 1.0, 0.0], 0.0, [1.0; 3]);
+        placed.numbers = vec![6.0, 9.0, 6.0];
+        placed.id = Some(format!("b{k}"));
+        placed
+    };
+    let kind = |symbol: &str| InstanceRule {
+        levels: 1,
+        ..InstanceRule::new(
+            symbol,
+            1.0,
+            vec![Placement::new("T1", [0.0; 3], 0.0, [1.0; 3])],
+        )
+    };
+    let houses = (0..5).map(house).collect();
+    let flat = InstanceGrammar {
+        axiom: "City".to_owned(),
+        templates: vec![cube],
+        rules: vec![
+            InstanceRule::new("City", 1.0, houses),
+            kind("B1"),
+            kind("B2"),
+        ],
+        ..InstanceGrammar::default()
+    };
+    let grid = Grid {
+        length: 100.0,
+        turn: 100.0,
+    };
+    let street = arrange(&flat, &grid);
+    let along = |text: &str| -> Vec<f64> {
+        let edited = edit(&street, &[text.parse().unwrap()], true).unwrap();
+        let instances = edited.derive().unwrap().instances;
+        instances.iter().map(|i| i.at[0]).collect()
+    };
+    assert_eq!(along("remove B2"), [0.0, 6.0, 12.0, 18.0]);
+    assert_eq!(along("scale B2=2,1,1"), [0.0, 6.0, 15.0, 24.0, 30.0]);
+    assert_eq!(along("move R1=0,3,0"), along("move R1=0,0,0"));
+    let text = grammar_json::to_string(&street).unwrap();
+    assert!(text.contains("\"row\":true") && text.contains("\"version\": 3"));
+    let again = grammar_json::parse(text.as_bytes(), Path::new("street.city-grammar.json"));
+    assert_eq!(again.unwrap(), street);
+    let again = compact::from_bytes(&compact::to_bytes(&street).unwrap());
+    assert_eq!(again.unwrap(), street);
 }
 
 fn single(city: &City, building: usize) -> City {

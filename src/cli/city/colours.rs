@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use edifice_base::{Error, Result};
-use edifice_grammar::instance::InstanceGrammar;
+use edifice_grammar::instance::{Begins, InstanceGrammar};
 use edifice_io::city::picture::Legend;
 use edifice_shape::triangles::{City, CityBuilding};
 use rustc_hash::FxHashMap;
@@ -22,6 +22,12 @@ pub(super) enum Colour {
     Height,
     /// Levels of its rule, of a grammar.
     Level,
+    /// The row that it stands in, of a grammar: rows take turns with colours, buildings in no row have the last.
+    Row,
+    /// The block that it stands in, of a grammar, as for rows.
+    Block,
+    /// The district that it stands in, of a grammar, as for rows.
+    District,
     /// By how much its volume differs from that in `--beside`, in per cent.
     Error,
 }
@@ -149,6 +155,9 @@ pub(super) fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> 
                 legend,
             })
         }
+        Colour::Row => grouped(shown, Begins::Row, "in no row"),
+        Colour::Block => grouped(shown, Begins::Block, "alone in its block"),
+        Colour::District => grouped(shown, Begins::District, "alone in its district"),
         Colour::Error => {
             let beside = beside.ok_or_else(|| option("errors are told against a city --beside"))?;
             let volumes: FxHashMap<&str, f64> = (beside.city.buildings.iter())
@@ -170,6 +179,40 @@ pub(super) fn colouring(colour: Colour, shown: &Read, beside: Option<&Read>) -> 
             })
         }
     }
+}
+
+/// Colours of rows, blocks or districts, `what` tells of those of one building.
+fn grouped(shown: &Read, least: Begins, what: &str) -> Result<Colouring> {
+    let none = || {
+        Error::option(
+            "--colour",
+            "rows, blocks and districts are told of grammars only",
+        )
+    };
+    let grammar = shown.grammar.as_ref().ok_or_else(none)?;
+    let flat = grammar.flat(None);
+    let top = flat.rules.iter().find(|r| r.symbol == flat.axiom);
+    let placed = top.iter().flat_map(|r| &r.successors);
+    let mut groups: Vec<Vec<&str>> = Vec::new();
+    for (placed, begins) in placed.zip(grammar.beginnings()) {
+        let id = placed.id.as_deref().unwrap_or_default();
+        match groups.last_mut().filter(|_| begins < least) {
+            Some(group) => group.push(id),
+            None => groups.push(vec![id]),
+        }
+    }
+    let last = TYPES.len() - 1;
+    let mut colours: FxHashMap<&str, [u8; 3]> = FxHashMap::default();
+    let many = groups.iter().filter(|g| g.len() > 1).enumerate();
+    for (k, group) in many {
+        colours.extend(group.iter().map(|id| (*id, TYPES[k % last])));
+    }
+    let of = |b: &CityBuilding| colours.get(b.id.as_str()).copied().unwrap_or(TYPES[last]);
+    Ok(Colouring {
+        colours: Some(shown.city.buildings.iter().map(of).collect()),
+        beside: None,
+        legend: vec![(TYPES[last], what.to_owned())],
+    })
 }
 
 /// The symbol that stands for each building: the innermost with its identifier.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
-use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
+use edifice_grammar::instance::{Begins, InstanceGrammar, InstanceRule, Placement};
 use rustc_hash::FxHashMap;
 
 use super::data;
@@ -35,12 +35,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
         .iter()
         .map(|t| t.mesh.triangles.len())
         .sum();
+    let tree = Tree::of(&grammar);
     if args.json {
         let summary = serde_json::json!({
             "buildings": derivation.buildings.len(), "instances": derivation.instances.len(),
             "terminals": grammar.templates.len(), "non_terminals": grammar.non_terminals(),
             "rules": grammar.rules.len(), "depth": derivation.depth, "template_triangles": triangles,
             "escapes": grammar.escapes(), "residuals": grammar.residuals(),
+            "districts": tree.districts, "blocks": tree.blocks, "rows": tree.rows.len(), "in_rows": tree.in_rows(),
         });
         return print::line(&summary.to_string());
     }
@@ -54,10 +56,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
         grammar.rules.len(),
         derivation.depth
     ))?;
-    let uses = Uses::new(&grammar);
+    tree.tell(derivation.buildings.len())?;
+    let uses = Uses::new(&grammar.flat(None));
     let (types, rest): (Vec<&InstanceRule>, Vec<&InstanceRule>) = (grammar.rules.iter())
         .filter(|r| r.symbol != grammar.axiom)
         .partition(|r| r.levels > 0);
+    let (rows, rest): (Vec<&InstanceRule>, Vec<&InstanceRule>) =
+        rest.into_iter().partition(|r| r.row);
     let (escapes, types): (Vec<&InstanceRule>, Vec<&InstanceRule>) =
         types.into_iter().partition(|r| uses.count(r) == 1);
     print::line(&format!(
@@ -68,6 +73,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     tell("escapes, buildings that no type explains", escapes, |r| {
         uses.text(r)
     })?;
+    tell("rows of buildings", rows, row)?;
     tell("other rules", rest, fixed)
 }
 
@@ -81,7 +87,8 @@ fn tell(
         return Ok(());
     }
     print::line(&format!("\n{}: {what}", rules.len()))?;
-    rules.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    let members = |r: &InstanceRule| if r.row { r.successors.len() } else { 0 };
+    rules.sort_by(|a, b| (b.weight.total_cmp(&a.weight)).then(members(b).cmp(&members(a))));
     for rule in rules.iter().take(TOLD) {
         print::line(&format!("  {}", text(rule)))?;
     }
@@ -91,31 +98,81 @@ fn tell(
     }
 }
 
-/// The instances of rules with parameters.
-struct Uses<'g> {
-    numbers: FxHashMap<&'g str, Vec<&'g [f64]>>,
+/// The districts, blocks and rows between the axiom and the buildings.
+struct Tree {
+    districts: usize,
+    blocks: usize,
+    /// Buildings of each row.
+    rows: Vec<usize>,
 }
 
-impl<'g> Uses<'g> {
-    fn new(grammar: &'g InstanceGrammar) -> Self {
-        let mut numbers: FxHashMap<&str, Vec<&[f64]>> = FxHashMap::default();
-        let axiom = grammar.rules.iter().filter(|r| r.symbol == grammar.axiom);
+impl Tree {
+    fn of(grammar: &InstanceGrammar) -> Self {
+        let begins = grammar.beginnings();
+        let count = |least: Begins| begins.iter().filter(|b| **b >= least).count();
+        let rows = grammar.rules.iter().filter(|r| r.row);
+        Self {
+            districts: count(Begins::District),
+            blocks: count(Begins::Block),
+            rows: rows.map(|r| r.successors.len()).collect(),
+        }
+    }
+
+    fn in_rows(&self) -> usize {
+        self.rows.iter().sum()
+    }
+
+    fn tell(&self, buildings: usize) -> Result<()> {
+        if self.blocks == self.districts && self.rows.is_empty() {
+            return Ok(());
+        }
+        let (in_rows, rows) = (self.in_rows(), self.rows.len());
+        let rows = match rows {
+            0 => "no rows".to_owned(),
+            _ => format!(
+                "{in_rows} of them in {rows} rows of {:.1}",
+                ratio(in_rows, rows)
+            ),
+        };
+        print::line(&format!(
+            "{} districts of {:.1} blocks; {} blocks of {:.1} buildings; {rows}",
+            self.districts,
+            ratio(self.blocks, self.districts),
+            self.blocks,
+            ratio(buildings, self.blocks),
+        ))
+    }
+}
+
+fn ratio(a: usize, b: usize) -> f64 {
+    a as f64 / b.max(1) as f64
+}
+
+/// The instances of rules with parameters.
+struct Uses {
+    numbers: FxHashMap<String, Vec<Vec<f64>>>,
+}
+
+impl Uses {
+    fn new(flat: &InstanceGrammar) -> Self {
+        let mut numbers: FxHashMap<String, Vec<Vec<f64>>> = FxHashMap::default();
+        let axiom = flat.rules.iter().filter(|r| r.symbol == flat.axiom);
         for placed in axiom.flat_map(|r| &r.successors) {
-            let own = numbers.entry(placed.symbol.as_str()).or_default();
-            own.push(&placed.numbers);
+            let own = numbers.entry(placed.symbol.clone()).or_default();
+            own.push(placed.numbers.clone());
         }
         Self { numbers }
     }
 
     fn count(&self, rule: &InstanceRule) -> usize {
-        self.numbers.get(rule.symbol.as_str()).map_or(0, Vec::len)
+        self.numbers.get(&rule.symbol).map_or(0, Vec::len)
     }
 
     /// A rule with the medians of its parameters, and what it puts down.
     fn text(&self, rule: &InstanceRule) -> String {
         let mut names = vec!["w".to_owned(), "d".to_owned()];
         names.extend((1..=rule.levels).map(|k| format!("h{k}")));
-        let own = self.numbers.get(rule.symbol.as_str());
+        let own = self.numbers.get(&rule.symbol);
         let median = |k: usize| {
             let mut all: Vec<f64> = own.into_iter().flatten().map(|n| n[k]).collect();
             all.sort_by(f64::total_cmp);
@@ -162,6 +219,22 @@ fn fixed(rule: &InstanceRule) -> String {
         )
     };
     format!("{} x {} -> {}", rule.symbol, rule.weight, parts(rule, one))
+}
+
+/// A row: its buildings one after the other, with the gaps and steps between them.
+fn row(rule: &InstanceRule) -> String {
+    let one = |s: &Placement| {
+        let [gap, step, _] = s.at;
+        let plan = s.numbers.iter().take(2).map(|v| format!("{v:.1}"));
+        let plan: Vec<String> = plan.collect();
+        format!(
+            "{}({}) {gap:+.1} {step:+.1}{}",
+            s.symbol,
+            plan.join(", "),
+            turned(s)
+        )
+    };
+    format!("{} -> {}", rule.symbol, parts(rule, one))
 }
 
 fn turned(placed: &Placement) -> String {

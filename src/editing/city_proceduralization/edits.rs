@@ -1,5 +1,7 @@
 //! Edits of an instance grammar, as text and as values.
 
+use rustc_hash::{FxHashMap, FxHashSet};
+
 use super::super::{CommandError, numbers};
 use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule, Placement};
 
@@ -9,6 +11,12 @@ pub enum CityEdit {
     /// `scale NAME=FX,FY,FZ`: factors of width, depth and height of a template, or of a type of building, wherever it stands; a name that
     /// ends in `*` is all names that begin so.
     Scale(String, [f64; 3]),
+    /// `move NAME=DX,DY,DZ`: a shift in metres of a district, block or row, along the axes of what it stands in.
+    Move(String, [f64; 3]),
+    /// `turn NAME=DEGREES`: a turn of a district, block or row about the place of its first building, counterclockwise from above.
+    Turn(String, f64),
+    /// `remove NAME`: takes a district, block, row, type of building or template away; a row closes up.
+    Remove(String),
     /// `weight RULE=W`: weight of a rule, counted from 0 in the order of the file.
     Weight(usize, f64),
 }
@@ -19,6 +27,15 @@ pub enum CityEditError {
     /// There is no such template.
     #[error("there is no template or type of building {0:?}: names are T1, B1, E1 or B*")]
     NoTemplate(String),
+    /// There is no such thing to be moved.
+    #[error("there is no district, block or row {0:?}: names are D1, K1, R1 or R*")]
+    NoGroup(String),
+    /// There is no such thing to be taken away.
+    #[error("nothing but the axiom is named {0:?}")]
+    NoSymbol(String),
+    /// A number that is infinite or none.
+    #[error("{0} is no length or angle")]
+    Shift(f64),
     /// There is no such rule.
     #[error("there is no rules[{rule}]: the grammar has {count}")]
     NoRule {
@@ -57,12 +74,22 @@ fn read(text: &str) -> Result<CityEdit, String> {
             let (template, factors) = value()?;
             CityEdit::Scale(template.to_owned(), numbers(factors)?)
         }
+        "move" => {
+            let (group, shift) = value()?;
+            CityEdit::Move(group.to_owned(), numbers(shift)?)
+        }
+        "turn" => {
+            let (group, degrees) = value()?;
+            CityEdit::Turn(group.to_owned(), numbers::<1>(degrees)?[0])
+        }
+        "remove" if rest.is_empty() => return Err("expected a name".into()),
+        "remove" => CityEdit::Remove(rest.to_owned()),
         "weight" => {
             let (rule, weight) = value()?;
             let rule = rule.parse().map_err(|_| format!("{rule:?} is no index"))?;
             CityEdit::Weight(rule, numbers::<1>(weight)?[0])
         }
-        _ => return Err("expected scale or weight".into()),
+        _ => return Err("expected scale, move, turn, remove or weight".into()),
     })
 }
 
@@ -79,10 +106,7 @@ pub fn edit(
     for edit in edits {
         match edit {
             CityEdit::Scale(template, factors) => {
-                let named = |symbol: &str| match template.strip_suffix('*') {
-                    Some(start) => symbol.starts_with(start),
-                    None => symbol == template,
-                };
+                let named = |symbol: &str| is_named(template, symbol);
                 let own = |r: &InstanceRule| r.levels > 0 && named(&r.symbol);
                 let types = out.rules.iter().any(own);
                 let templates = out.templates.iter().any(|t| named(&t.symbol));
@@ -105,6 +129,13 @@ pub fn edit(
                     }
                 }
             }
+            CityEdit::Move(group, shift) => each_group(&mut out, group, shift, |placed| {
+                placed.at = [0, 1, 2].map(|k| placed.at[k] + shift[k]);
+            })?,
+            CityEdit::Turn(group, degrees) => each_group(&mut out, group, &[*degrees], |placed| {
+                placed.turn = (placed.turn + degrees).rem_euclid(360.0);
+            })?,
+            CityEdit::Remove(name) => remove(&mut out, name)?,
             CityEdit::Weight(rule, weight) => {
                 let (rule, count) = (*rule, out.rules.len());
                 let own = out.rules.get_mut(rule);
@@ -114,6 +145,74 @@ pub fn edit(
     }
     out.check()?;
     Ok(out)
+}
+
+/// True if a name, or what it begins with before a `*`, names a symbol.
+fn is_named(name: &str, symbol: &str) -> bool {
+    match name.strip_suffix('*') {
+        Some(start) => symbol.starts_with(start),
+        None => symbol == name,
+    }
+}
+
+/// Edits the instances of what has a rule without parameters: districts, blocks and rows.
+fn each_group(
+    grammar: &mut InstanceGrammar,
+    name: &str,
+    values: &[f64],
+    edit: impl Fn(&mut Placement),
+) -> Result<(), CityEditError> {
+    if let Some(bad) = values.iter().find(|v| !v.is_finite()) {
+        return Err(CityEditError::Shift(*bad));
+    }
+    let own = |r: &&InstanceRule| r.levels == 0 && is_named(name, &r.symbol);
+    let groups = grammar.rules.iter().filter(own);
+    let groups: FxHashSet<String> = groups.map(|r| r.symbol.clone()).collect();
+    let all = grammar.rules.iter_mut().flat_map(|r| &mut r.successors);
+    let mut found = false;
+    for placed in all.filter(|p| groups.contains(&p.symbol)) {
+        edit(placed);
+        found = true;
+    }
+    match found {
+        true => Ok(()),
+        false => Err(CityEditError::NoGroup(name.to_owned())),
+    }
+}
+
+/// Takes symbols out of all rules, and what instances say of them.
+fn remove(grammar: &mut InstanceGrammar, name: &str) -> Result<(), CityEditError> {
+    let gone = |symbol: &str| symbol != grammar.axiom && is_named(name, symbol);
+    let mut kept: FxHashMap<String, Vec<bool>> = FxHashMap::default();
+    for rule in &grammar.rules {
+        let stays = rule.successors.iter().map(|s| !gone(&s.symbol));
+        kept.entry(rule.symbol.clone())
+            .or_insert_with(|| stays.collect());
+    }
+    if kept.values().flatten().all(|&stays| stays) {
+        return Err(CityEditError::NoSymbol(name.to_owned()));
+    }
+    grammar
+        .rules
+        .retain(|r| r.symbol == grammar.axiom || !is_named(name, &r.symbol));
+    grammar.templates.retain(|t| !is_named(name, &t.symbol));
+    for rule in &mut grammar.rules {
+        rule.successors.retain(|s| !is_named(name, &s.symbol));
+        rule.successors
+            .iter_mut()
+            .for_each(|s| drop_parts(s, &kept));
+    }
+    Ok(())
+}
+
+/// The parts of an instance without those of successors that are gone.
+fn drop_parts(placed: &mut Placement, kept: &FxHashMap<String, Vec<bool>>) {
+    if let Some(stays) = kept.get(&placed.symbol) {
+        let mut stays = stays.iter();
+        placed.parts.retain(|_| stays.next().is_none_or(|s| *s));
+    }
+    let parts = placed.parts.iter_mut().flatten();
+    parts.for_each(|p| drop_parts(p, kept));
 }
 
 fn scale(placed: &mut Placement, named: &impl Fn(&str) -> bool, factors: &[f64; 3]) {

@@ -163,6 +163,9 @@ impl InstanceGrammar {
             let usable = v.is_finite() && v > 0.0;
             number(v, "factor", usable, || format!("rules[{rule}].scale"))?;
         }
+        if r.row {
+            return self.check_row(rule, symbols);
+        }
         if r.levels == 0 && r.is_unscaled() {
             return Ok(());
         }
@@ -177,6 +180,38 @@ impl InstanceGrammar {
             number(level, "level", r.levels == 0 || within, place)?;
         }
         Ok(())
+    }
+
+    /// Everything in a row has a length.
+    fn check_row(
+        &self,
+        rule: usize,
+        symbols: &FxHashMap<&str, Symbol>,
+    ) -> Result<(), InstanceGrammarError> {
+        let r = &self.rules[rule];
+        let levels = r.levels as f64;
+        let place = || format!("rules[{rule}].parameters");
+        number(levels, "number of levels of a row", r.levels == 0, place)?;
+        let factor = r.scale.into_iter().find(|f| *f != 1.0);
+        let place = || format!("rules[{rule}].scale");
+        number(
+            factor.unwrap_or(1.0),
+            "factor of a row",
+            factor.is_none(),
+            place,
+        )?;
+        let long = |s: &str| match symbols.get(s) {
+            Some(Symbol::Template(_)) => true,
+            Some(&Symbol::Rule(k)) => self.rules[k].levels > 0,
+            None => false,
+        };
+        match r.successors.iter().find(|s| !long(&s.symbol)) {
+            Some(s) => Err(InstanceGrammarError::NoLength {
+                rule,
+                symbol: s.symbol.clone(),
+            }),
+            None => Ok(()),
+        }
     }
 
     fn check_placement(

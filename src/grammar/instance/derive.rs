@@ -1,12 +1,10 @@
 //! From the axiom to placed templates, and to triangles.
 
-use std::borrow::Cow;
-
 use rustc_hash::FxHashMap;
 
 use super::check::Symbol;
 use super::limits::INSTANCE_LIMIT;
-use super::{InstanceGrammar, InstanceGrammarError, Placement};
+use super::{InstanceGrammar, InstanceGrammarError, Placement, Places};
 use edifice_shape::triangles::TriangleMesh;
 
 /// A template in its final place.
@@ -57,30 +55,43 @@ impl InstanceGrammar {
             return Err(InstanceGrammarError::NoAxiom(self.axiom.clone()));
         };
         let mut out = InstanceDerivation::default();
-        let frame = Frame {
-            at: [0.0; 3],
-            turn: 0.0,
-            scale: 1.0,
-        };
         let derivation = Deriver {
-            grammar: self,
+            places: Places::new(self),
             symbols: &symbols,
         };
         let axiom = Placement::new(self.axiom.as_str(), [0.0; 3], 0.0, [1.0; 3]);
-        derivation.rule(start, &axiom, &frame, None, 1, &mut out)?;
+        derivation.rule(start, &axiom, &Frame::WORLD, None, 1, &mut out)?;
         Ok(out)
     }
 }
 
 /// The frame of a non-terminal.
-struct Frame {
-    at: [f64; 3],
-    turn: f64,
-    scale: f64,
+pub(super) struct Frame {
+    pub(super) at: [f64; 3],
+    pub(super) turn: f64,
+    pub(super) scale: f64,
+}
+
+impl Frame {
+    /// The frame of the axiom.
+    pub(super) const WORLD: Self = Self {
+        at: [0.0; 3],
+        turn: 0.0,
+        scale: 1.0,
+    };
+
+    /// The place of a successor, and its turn.
+    pub(super) fn place(&self, placed: &Placement) -> ([f64; 3], f64) {
+        let (sin, cos) = self.turn.to_radians().sin_cos();
+        let [x, y, z] = placed.at.map(|v| v * self.scale);
+        let [a, b, c] = self.at;
+        let at = [a + x * cos - y * sin, b + x * sin + y * cos, c + z];
+        (at, self.turn + placed.turn)
+    }
 }
 
 struct Deriver<'a> {
-    grammar: &'a InstanceGrammar,
+    places: Places<'a>,
     symbols: &'a FxHashMap<&'a str, Symbol>,
 }
 
@@ -94,20 +105,9 @@ impl Deriver<'_> {
         depth: usize,
         out: &mut InstanceDerivation,
     ) -> Result<(), InstanceGrammarError> {
-        let rule = &self.grammar.rules[rule];
         out.depth = out.depth.max(depth);
-        for (i, successor) in rule.successors.iter().enumerate() {
-            let placed = match own.parts.get(i) {
-                None if rule.levels == 0 => Cow::Borrowed(successor),
-                None => Cow::Owned(rule.part(i, &own.numbers)),
-                Some(None) => continue,
-                Some(Some(part)) => Cow::Borrowed(part),
-            };
-            let placed = match rule.is_unscaled() {
-                true => placed,
-                false => Cow::Owned(rule.scaled(&placed)),
-            };
-            self.place(&placed, frame, building, depth, out)?;
+        for placed in self.places.of(rule, own).iter().flatten() {
+            self.place(placed, frame, building, depth, out)?;
         }
         Ok(())
     }
@@ -120,14 +120,7 @@ impl Deriver<'_> {
         depth: usize,
         out: &mut InstanceDerivation,
     ) -> Result<(), InstanceGrammarError> {
-        let (sin, cos) = frame.turn.to_radians().sin_cos();
-        let [x, y, z] = placed.at.map(|v| v * frame.scale);
-        let at = [
-            frame.at[0] + x * cos - y * sin,
-            frame.at[1] + x * sin + y * cos,
-            frame.at[2] + z,
-        ];
-        let turn = frame.turn + placed.turn;
+        let (at, turn) = frame.place(placed);
         let building = match &placed.id {
             Some(id) => Some(out.building(id, &placed.attributes)),
             None => building,

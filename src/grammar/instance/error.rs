@@ -88,6 +88,14 @@ pub enum InstanceGrammarError {
         /// The successor's symbol.
         symbol: String,
     },
+    /// A row of something that has neither width nor depth.
+    #[error("rules[{rule}]: {symbol:?} has no length, and cannot stand in a row")]
+    NoLength {
+        /// Index of the rule.
+        rule: usize,
+        /// The successor's symbol.
+        symbol: String,
+    },
     /// A part is of no known symbol.
     #[error("a part of unknown symbol {0:?}")]
     UnknownPart(String),

@@ -8,19 +8,26 @@
 //! that it is absent; a part may be of another template than the rule's. Without them the successors stand where the rule, with its mean transforms, puts
 //! them. A rule may have parameters ([`InstanceRule::part`]): an instance gives the numbers, and the parts follow; what the
 //! rule does not reach is a residual, again in `parts`, that can be dropped ([`InstanceGrammar::rules_only`]).
+//!
+//! Buildings may stand in rows, rows in blocks, and blocks in districts ([`Begins`]): in a row each begins where the one before it ends
+//! ([`Places`]), so that a type that is made wider pushes its neighbours aside.
 
+mod arranged;
 mod check;
 mod derive;
 mod error;
 mod kept;
 mod limits;
 mod parametric;
+mod places;
 mod repeated;
 
+pub use arranged::{Begins, Grid};
 pub use derive::{InstanceDerivation, TemplateInstance};
 pub use error::InstanceGrammarError;
 pub use kept::Kept;
 pub use limits::INSTANCE_LIMIT;
+pub use places::Places;
 pub use repeated::{Posed, Repeated, repeated};
 
 use std::sync::Arc;
@@ -86,6 +93,9 @@ pub struct InstanceRule {
     /// Number of levels of a rule with parameters (w, d, h1, ..., hn), whose successors are in shares of them
     /// ([`InstanceRule::part`]); 0 where lengths are metres.
     pub levels: usize,
+    /// True if the successors stand in a row along x: the first at its own place, each other one where the one before it ends; its shift along
+    /// x is the gap between them ([`Places`]).
+    pub row: bool,
     /// Factors of all lengths along the axes of the symbol: what an edit of a type changes, wherever the type stands.
     pub scale: [f64; 3],
     /// The placements that replace it.

@@ -21,6 +21,7 @@ impl InstanceRule {
             symbol: symbol.into(),
             weight,
             levels: 0,
+            row: false,
             scale: [1.0; 3],
             successors,
         }
@@ -86,7 +87,7 @@ impl InstanceRule {
 }
 
 /// Lengths w along x and d along y, measured along the width and the depth of what is turned by degrees.
-fn along_and_across(turn: f64, w: f64, d: f64) -> [f64; 2] {
+pub(super) fn along_and_across(turn: f64, w: f64, d: f64) -> [f64; 2] {
     let (sin, cos) = turn.to_radians().sin_cos();
     [(w * cos).hypot(d * sin), (w * sin).hypot(d * cos)]
 }

@@ -37,7 +37,9 @@ use edifice_shape::triangles::TriangleMesh;
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-grammar";
 /// The newest version; it is written where a rule has parameters or factors, version 1 otherwise.
-pub const VERSION: u64 = 2;
+pub const VERSION: u64 = 3;
+/// The version of rules with parameters and factors, but without rows.
+const PARAMETRIC: u64 = 2;
 /// The oldest version that is read.
 const FIRST: u64 = 1;
 /// Steps of the unit box: the first of these on which all positions lie, or else the last.
@@ -173,7 +175,11 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
         .rules
         .iter()
         .any(|r| r.levels > 0 || !r.is_unscaled());
-    let version = if newer { VERSION } else { FIRST };
+    let version = match grammar.rules.iter().any(|r| r.row) {
+        true => VERSION,
+        false if newer => PARAMETRIC,
+        false => FIRST,
+    };
     let mut out = format!(
         "{{ \"format\": \"{FORMAT}\", \"version\": {version}, \"name\": {}, \"unit\": \"m\", \"up\": \"z\",\n  \
          \"reference_system\": {}, \"origin\": {}, \"axiom\": {}, \"steps\": {},\n  \"templates\": [",
@@ -207,6 +213,9 @@ pub fn to_string(grammar: &InstanceGrammar) -> serde_json::Result<String> {
         if rule.levels > 0 {
             let names = serde_json::to_string(&parameters(rule.levels))?;
             out.push_str(&format!("\"parameters\":{names},"));
+        }
+        if rule.row {
+            out.push_str("\"row\":true,");
         }
         if !rule.is_unscaled() {
             let factors = serde_json::to_string(&rule.scale.map(Number))?;

@@ -1,6 +1,7 @@
 //! The precision in which the numbers of a grammar are written.
 
 use super::settings::Precision;
+use edifice_grammar::instance::Grid;
 
 /// The precision in which the numbers of a grammar are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +34,14 @@ impl Detail {
             length: self.length.max(Self::CENTIMETRE.length),
             angle: self.angle.max(Self::CENTIMETRE.angle),
             ..self
+        }
+    }
+
+    /// The grid of what stands under the axiom.
+    pub(super) fn grid(&self) -> Grid {
+        Grid {
+            length: self.length,
+            turn: self.angle,
         }
     }
 

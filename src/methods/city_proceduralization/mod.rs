@@ -10,6 +10,7 @@
 //!    In `best`, [`patterns`]: types of buildings at like relative places.
 //! 4. **Grammar** ([`emission`], Eq. 5 to 7). Leaves are terminals, inner nodes non-terminals with a rule and
 //!    mean transforms; each instance keeps where its parts really stand.
+//! 5. **Districts, blocks and rows** ([`arrangement`]), in `best`: the rules between the axiom and the buildings, which do the placing.
 //!
 //! # Modes
 //! | | `paper` | `best` |
@@ -18,7 +19,7 @@
 //! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, at a price of derived triangles, over the four quarter turns; for few polygons, the price is higher, triangles of templates have one, too, and of twice as many types those of most worth stay |
 //! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
 //! | buildings | no types of their own | rules with parameters (`rulebook`): a type's building, put into the width, depth and heights of another |
-//! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for, and [`patterns`] of them that repeat |
+//! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for; the town plan's tree ([`arrangement`]); beside it, [`patterns`] that repeat |
 //!
 //! # Deviations and readings
 //! - A(z) is computed exactly from the triangles instead of from rendered images, every 0.25 m. Second differences
@@ -43,8 +44,11 @@
 //! - Feature 1 is the vertex count of the simplified convex hull of the plan; the paper simplifies the outlines of four side views.
 //! - In `paper` an instance keeps where its parts really stand, beside the mean transforms of Eq. 7; without these residuals
 //!   (`InstanceGrammar::rules_only`) parts stand where Eq. 7 puts them, as the paper prints.
+//! - The paper's tree is of types; in `best` instances are grouped, by the town plan: a type of building has other neighbours at each of its
+//!   places, and patterns of whole buildings repeat in few real cities. An edit of a type moves its neighbours in rows.
 //! - The mean of Eq. 9 is taken over the pairs of neighbours of the two types.
 
+pub mod arrangement;
 pub mod building_types;
 mod candidates;
 pub mod component;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::arrangement::arrange;
 use super::building_types::{BuildingTypes, building_types};
 use super::component::Component;
 use super::components::{Decomposition, decompose};
@@ -253,7 +254,7 @@ impl<'a> Prepared<'a> {
             patterns,
         };
         Made {
-            grammar: emit(&found, &detail, exact),
+            grammar: arrange(&emit(&found, &detail, exact), &detail.grid()),
             types: priced.types,
             structure: Structure::Patterns {
                 buildings: buildings.clone(),

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::error::CgaCityError;
 use edifice_grammar::instance::{
-    INSTANCE_LIMIT, InstanceGrammar, InstanceGrammarError, InstanceRule, Placement,
+    INSTANCE_LIMIT, InstanceGrammar, InstanceGrammarError, Placement, Places,
 };
 
 /// The symbol that a start shape begins with.
@@ -44,6 +44,7 @@ pub(super) fn starts(grammar: &InstanceGrammar) -> Result<Vec<Start>, CgaCityErr
     }
     let mut walk = Walk {
         grammar,
+        places: Places::new(grammar),
         symbols,
         instances: 0,
         starts: Vec::new(),
@@ -69,6 +70,7 @@ struct Frame<'f> {
 
 struct Walk<'g> {
     grammar: &'g InstanceGrammar,
+    places: Places<'g>,
     symbols: FxHashMap<&'g str, Kind>,
     /// Templates put down so far, as a derivation counts them.
     instances: usize,
@@ -92,8 +94,8 @@ impl Walk<'_> {
                 let size = placed.size.map(|v| v * frame.scale);
                 (size.to_vec(), [size[0], size[1]], 1)
             }
-            Kind::Rule(rule) => {
-                let rule = &grammar.rules[rule];
+            Kind::Rule(index) => {
+                let rule = &grammar.rules[index];
                 let scale = frame.scale * placed.size[0];
                 if rule.levels == 0 {
                     let frame = Frame {
@@ -102,7 +104,7 @@ impl Walk<'_> {
                         scale,
                         id,
                     };
-                    return self.inside(rule, placed, &frame);
+                    return self.inside(index, placed, &frame);
                 }
                 let factors = rule.scale.map(|f| f * scale);
                 let plan = [0, 1].map(|k| placed.numbers[k] * factors[k]);
@@ -128,15 +130,18 @@ impl Walk<'_> {
     /// Everything that a rule without parameters puts down; identifiers are those of this instance.
     fn inside(
         &mut self,
-        rule: &InstanceRule,
+        rule: usize,
         own: &Placement,
         frame: &Frame<'_>,
     ) -> Result<(), CgaCityError> {
-        for (i, successor) in rule.successors.iter().enumerate() {
-            let mut part = match rule.is_unscaled() {
-                true => successor.clone(),
-                false => rule.scaled(successor),
-            };
+        // Parts stand where the rules put them.
+        let bare = Placement {
+            parts: Vec::new(),
+            ..own.clone()
+        };
+        for (i, placed) in self.places.of(rule, &bare).into_iter().enumerate() {
+            let Some(placed) = placed else { continue };
+            let mut part = placed.into_owned();
             if let Some(Some(residual)) = own.parts.get(i) {
                 part.id = residual.id.clone().or(part.id);
             }

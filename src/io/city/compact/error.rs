@@ -3,11 +3,14 @@
 use super::unit::Steps;
 use edifice_grammar::instance::InstanceGrammarError;
 
-/// The version written.
+/// The version written of a grammar that is flat.
 pub const VERSION: u16 = 3;
 
-/// The version of grammars that share a dictionary, and the newest that is read.
+/// The version of flat grammars that share a dictionary.
 pub(super) const SHARING: u16 = 4;
+
+/// The version of grammars with rows, and the newest that is read.
+pub const ARRANGED: u16 = 5;
 
 /// The oldest version that is read.
 pub(super) const FIRST: u16 = 1;
@@ -20,7 +23,7 @@ pub enum CompactError {
     #[error("not a compact grammar: it does not begin with \"EdCG\"")]
     Magic,
     /// A version that is not known.
-    #[error("version {0}, expected {FIRST} to {SHARING}")]
+    #[error("version {0}, expected {FIRST} to {ARRANGED}")]
     Version(u16),
     /// The bytes are not those that were written.
     #[error("damaged: the checksum does not fit")]

@@ -1,4 +1,4 @@
-//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 to 4.
+//! Instance grammars in few bytes: `*.city-grammar.bin`, format `edifice/city-grammar-compact`, versions 1 to 5.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -13,11 +13,13 @@
 //!
 //! Whoever needs no residuals leaves the last part unread. Until version 2, buildings follow Hilbert's curve; from version 3 on they go along
 //! rows, each told by its place beside the one before it (`rows.rs`). In version 1, rules have no parameters, and residuals follow the
-//! rules in one part. In version 4 a dictionary in another file has the first templates and rules ([`Dictionary`]).
+//! rules in one part. In version 4 a dictionary in another file has the first templates and rules ([`Dictionary`]), which in version 5 it may have, too.
+//! In version 5 districts, blocks and rows are not written as rules, but as what each building begins, two bits by the coder before the
+//! rules ([`edifice_grammar::instance::Begins`]), where the flat grammar and these make the same rules again (`tree.rs`).
 //!
 //! Lengths, turns and templates' corners are whole steps ([`Steps`]), chosen so that nothing is lost where a grammar lies on
 //! any of the steps that are tried; otherwise it is rounded to the finest. A file holds what the text
-//! ([`super::grammar_json`]) holds, but for the order of the axiom's successors (so that neighbours
+//! ([`super::grammar_json`]) holds, but for the order of the axiom's successors where they are buildings (so that neighbours
 //! follow each other), that of a template's corners and triangles, and corners without a triangle.
 
 mod dictionary;
@@ -27,10 +29,12 @@ mod integers;
 mod mesh;
 mod names;
 mod order;
+mod packing;
 mod range_coder;
 mod rows;
 mod rules;
 mod steps;
+mod tree;
 mod unit;
 
 use std::path::Path;
@@ -38,13 +42,15 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use self::dictionary::{DICTIONARY, Dictionary};
-pub use self::error::{CompactError, VERSION};
+pub use self::error::{ARRANGED, CompactError, VERSION};
 use self::error::{FIRST, SHARING};
 use self::identity::{Attributes, Identities};
 use self::mesh::{MeshModels, StepMesh};
 use self::names::{Names, names, runs};
+use self::packing::{checksum, deflated, inflated};
 use self::range_coder::{Coder, Decoder, Encoder};
 use self::rules::Rules;
+use self::tree::Tree;
 pub use self::unit::Steps;
 use super::pictures;
 use crate::write_atomic;
@@ -57,8 +63,6 @@ use edifice_shape::triangles::TriangleMesh;
 const MAGIC: [u8; 4] = *b"EdCG";
 /// Bytes before the checked part.
 const START: usize = 10;
-/// Most bytes of names, identifiers and attributes, unpacked.
-const MOST_TEXT: u64 = 1 << 28;
 
 /// Reads a grammar and checks that it derives; a dictionary that it shares is read from [`DICTIONARY`] beside it.
 ///
@@ -114,6 +118,9 @@ struct Texts {
     /// SHA-256 of the dictionary that has the first templates and rules.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     dictionary: Option<String>,
+    /// The grid of the flat grammar of districts, blocks and rows: steps of a metre and of a degree.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    arranged: Option<[f64; 2]>,
 }
 
 /// The bytes of a grammar.
@@ -141,11 +148,14 @@ fn encoded(
     dictionary: Option<&Dictionary>,
 ) -> Result<Vec<u8>, CompactError> {
     grammar.check()?;
-    let version = if dictionary.is_some() {
-        SHARING
-    } else {
-        VERSION
+    let tree = Tree::of(grammar);
+    let rows = grammar.rules.iter().any(|r| r.row);
+    let version = match dictionary {
+        _ if tree.is_some() || rows => ARRANGED,
+        Some(_) => SHARING,
+        None => VERSION,
     };
+    let grammar = tree.as_ref().map_or(grammar, |t| &t.flat);
     let shared = dictionary.map_or(0, |d| d.grammar.templates.len());
     let known = dictionary.map_or_else(Vec::new, Dictionary::rules);
     let steps = Steps::of(grammar);
@@ -162,7 +172,8 @@ fn encoded(
         models.code(&mut coder, &in_steps(&template.mesh, steps.shape)?)?;
     }
     let mut sorted = grammar.rules.clone();
-    for rule in sorted.iter_mut().filter(|r| r.symbol == grammar.axiom) {
+    let loose = sorted.iter_mut().filter(|_| tree.is_none());
+    for rule in loose.filter(|r| r.symbol == grammar.axiom) {
         order::along_rows(&mut rule.successors, &steps);
     }
     let mut rules = Rules::new(
@@ -173,6 +184,9 @@ fn encoded(
         Identities::default(),
         version,
     );
+    if let Some(tree) = &tree {
+        rules.begins(&tree.begins)?;
+    }
     let mut made = rules.rules(&sorted, &known, axiom)?;
     let mut residuals = Vec::new();
     let mut coder = None;
@@ -207,6 +221,7 @@ fn encoded(
         attributes: identities.attributes,
         textures: textures.collect(),
         dictionary: dictionary.map(|d| d.sha256.clone()),
+        arranged: tree.map(|t| [t.grid.length, t.grid.turn]),
     };
     let texts = serde_json::to_vec(&texts).map_err(|e| CompactError::Text(e.to_string()))?;
     let texts = deflated(&texts);
@@ -254,7 +269,7 @@ fn decoded(
         return Err(CompactError::Truncated);
     };
     let version = u16::from_le_bytes([start[4], start[5]]);
-    if !(FIRST..=SHARING).contains(&version) {
+    if !(FIRST..=ARRANGED).contains(&version) {
         return Err(CompactError::Version(version));
     }
     if u32::from_le_bytes([start[6], start[7], start[8], start[9]]) != checksum(body) {
@@ -269,7 +284,7 @@ fn decoded(
         serde_json::from_slice(&inflated(texts)?).map_err(|e| CompactError::Text(e.to_string()))?;
     let steps = texts.steps.checked()?;
     let shared = match (version, texts.dictionary.as_deref()) {
-        (SHARING, Some(wanted)) => Some(shared(wanted)?),
+        (SHARING | ARRANGED, Some(wanted)) => Some(shared(wanted)?),
         _ => None,
     };
     let known = shared.as_ref().map_or_else(Vec::new, Dictionary::rules);
@@ -305,7 +320,13 @@ fn decoded(
     let axiom = symbols.get(texts.axiom).cloned();
     let identities = Identities::new(texts.ids, texts.attributes);
     let mut rules = Rules::new(coder, steps, &symbols, count, identities, version);
+    let grid = texts.arranged.filter(|_| version >= ARRANGED);
+    let grid = grid.map(tree::grid).transpose()?;
+    if grid.is_some() {
+        rules.begins(&[])?;
+    }
     let mut made = rules.rules(&[], &known, texts.axiom)?;
+    let begins = rules.told();
     if version > FIRST && !residuals.is_empty() {
         if rules.switch(Decoder::new(residuals)).exhausted() {
             return Err(CompactError::Truncated);
@@ -327,6 +348,11 @@ fn decoded(
         false => {
             grammar.check()?;
             steps::writable(&grammar)?;
+            let Some(grid) = grid else {
+                return Ok(grammar);
+            };
+            let grammar = grammar.arranged(&begins, &grid);
+            grammar.check()?;
             Ok(grammar)
         }
     }
@@ -360,31 +386,5 @@ fn in_box(mesh: &StepMesh, steps: i64) -> TriangleMesh {
             .map(|c| [unit(c[0]) - 0.5, unit(c[1]) - 0.5, unit(c[2])])
             .collect(),
         triangles: mesh.triangles.clone(),
-    }
-}
-
-fn checksum(bytes: &[u8]) -> u32 {
-    let mut crc = flate2::Crc::new();
-    crc.update(bytes);
-    crc.sum()
-}
-
-fn deflated(bytes: &[u8]) -> Vec<u8> {
-    use std::io::Write;
-    let mut encoder = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
-    // Writing to memory does not fail.
-    let _ = encoder.write_all(bytes);
-    encoder.finish().unwrap_or_default()
-}
-
-fn inflated(bytes: &[u8]) -> Result<Vec<u8>, CompactError> {
-    use std::io::Read;
-    let mut out = Vec::new();
-    let decoder = flate2::read::DeflateDecoder::new(bytes);
-    let read = decoder.take(MOST_TEXT + 1).read_to_end(&mut out);
-    read.map_err(|e| CompactError::Text(e.to_string()))?;
-    match out.len() as u64 > MOST_TEXT {
-        true => Err(CompactError::TooLarge("bytes of text")),
-        false => Ok(out),
     }
 }

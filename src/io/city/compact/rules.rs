@@ -9,13 +9,13 @@ mod place;
 
 use rustc_hash::FxHashMap;
 
-use super::error::CompactError;
+use super::error::{ARRANGED, CompactError};
 use super::identity::Identities;
 use super::integers::{BitTree, Natural, Whole, plain};
 use super::range_coder::{Bit, Coder};
 use super::rows::{Footprint, PLACES};
 use super::unit::Steps;
-use edifice_grammar::instance::InstanceRule;
+use edifice_grammar::instance::{Begins, InstanceRule};
 
 /// Most placements of a file.
 const MOST_PLACEMENTS: u64 = 8_000_000;
@@ -86,19 +86,25 @@ pub(super) struct Rules<'a, C> {
     as_usual: Bit,
     counts: Natural,
     weight: Natural,
-    flags: [Bit; 4],
+    flags: [Bit; 5],
     /// True if rules may have parameters and factors: not in version 1.
     parametric: bool,
     /// True if buildings follow each other in rows: from version 3 on.
     rows: bool,
+    /// True if rules may be rows: from version 5 on. What a building begins, by what the one before it begins.
+    arranged: bool,
+    begins: [BitTree; 4],
+    /// The beginnings of the axiom's buildings, as far as it is known; true while one is told that goes on with a row.
+    told: Vec<Begins>,
+    in_row: bool,
     /// True for the axiom's rules; the place of a building beside the one before it, and the rest, by the place.
     is_top: Bit,
-    beside: BitTree,
-    rest: [[Whole; 2]; PLACES],
+    beside: [BitTree; 2],
+    rest: [[[Whole; 2]; PLACES]; 2],
     /// Levels of the first rule of each symbol, where they are needed to read the axiom's.
     levels_of: FxHashMap<String, usize>,
     levels: Natural,
-    again: Bit,
+    again: [Bit; 2],
     /// The numbers of the instance of each symbol before, and what codes them: the first of a symbol, then others, by parameter.
     numbers_before: FxHashMap<usize, Vec<i64>>,
     numbers_models: Vec<[Whole; PARAMETERS]>,
@@ -106,6 +112,9 @@ pub(super) struct Rules<'a, C> {
     last_numbers: Vec<i64>,
     last_symbol: Option<usize>,
 }
+
+/// Contexts of poses: a template or a non-terminal by what it is near to, and in rows besides.
+const CONTEXTS: usize = 10;
 
 /// Parameters with probabilities of their own.
 const PARAMETERS: usize = 6;
@@ -117,6 +126,7 @@ enum Flag {
     HasParts,
     Present,
     Scaled,
+    Row,
 }
 
 impl<'a, C: Coder> Rules<'a, C> {
@@ -139,22 +149,26 @@ impl<'a, C: Coder> Rules<'a, C> {
             templates,
             identities,
             placements: 0,
-            models: (0..8).map(|_| PoseModels::default()).collect(),
-            quarter: vec![BitTree::new(2); 8],
+            models: (0..CONTEXTS).map(|_| PoseModels::default()).collect(),
+            quarter: vec![BitTree::new(2); CONTEXTS],
             is_rule: vec![Bit::default(); 4],
             symbol: [BitTree::below(templates), BitTree::below(rules)],
             as_usual: Bit::default(),
             counts: Natural::default(),
             weight: Natural::default(),
-            flags: [Bit::default(); 4],
+            flags: [Bit::default(); 5],
             parametric: version > 1,
             rows: version > 2,
+            arranged: version >= ARRANGED,
+            begins: [(); 4].map(|()| BitTree::new(2)),
+            told: Vec::new(),
+            in_row: false,
             is_top: Bit::default(),
-            beside: BitTree::below(PLACES),
+            beside: [(); 2].map(|()| BitTree::below(PLACES)),
             rest: Default::default(),
             levels_of: FxHashMap::default(),
             levels: Natural::default(),
-            again: Bit::default(),
+            again: Default::default(),
             numbers_before: FxHashMap::default(),
             numbers_models: vec![Default::default(); parts::NUMBER_CONTEXTS],
             last_numbers: Vec::new(),
@@ -244,6 +258,7 @@ impl<'a, C: Coder> Rules<'a, C> {
                 scale = own.map(|v| plain(&mut self.coder, v));
             }
         }
+        let row = self.arranged && self.flag(Flag::Row, given.is_some_and(|r| r.row));
         let levels = levels as usize;
         let count = self.count(given.map_or(0, |r| r.successors.len()))?;
         let top = self.numbers.get(symbol.as_str()) == Some(&axiom);
@@ -256,17 +271,47 @@ impl<'a, C: Coder> Rules<'a, C> {
                 _ => Near::Below,
             };
             let given = given.map(|r| &r.successors[k]);
+            self.in_row = top && self.told.get(k) == Some(&Begins::Nothing);
             let (placed, pose) = self.placement(near, &before, given, levels > 0)?;
             before = pose;
             successors.push(placed);
         }
+        self.in_row = false;
         Ok(InstanceRule {
             symbol,
             weight,
             levels,
+            row,
             scale,
             successors,
         })
+    }
+
+    /// The beginnings of the axiom's buildings: before the rules, since those in rows are told differently.
+    pub(super) fn begins(&mut self, given: &[Begins]) -> Result<(), CompactError> {
+        const ALL: [Begins; 4] = [
+            Begins::Nothing,
+            Begins::Row,
+            Begins::Block,
+            Begins::District,
+        ];
+        let count = self.count(given.len())?;
+        let mut before = Begins::District;
+        for k in 0..count {
+            if self.coder.exhausted() {
+                return Err(CompactError::Truncated);
+            }
+            let own = given.get(k).map_or(0, |b| *b as usize);
+            let found = self.begins[before as usize].code(&mut self.coder, own);
+            before = *ALL.get(found).ok_or(CompactError::Index("building"))?;
+            self.told.push(before);
+        }
+        Ok(())
+    }
+
+    /// The beginnings of the axiom's buildings, once they are known.
+    pub(super) fn told(&mut self) -> Vec<Begins> {
+        std::mem::take(&mut self.told)
     }
 
     fn name(&mut self, is_rule: bool, number: usize) -> Result<String, CompactError> {

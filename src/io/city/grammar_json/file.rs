@@ -80,6 +80,8 @@ pub(super) struct FileRule {
     pub(super) weight: f64,
     #[serde(default)]
     pub(super) parameters: Vec<String>,
+    #[serde(default)]
+    pub(super) row: bool,
     #[serde(default = "ones")]
     pub(super) scale: [f64; 3],
     pub(super) successors: Vec<FilePlacement>,
@@ -152,6 +154,7 @@ pub(super) fn rule_of(rule: FileRule, levels: usize) -> InstanceRule {
         symbol: rule.symbol,
         weight: rule.weight,
         levels,
+        row: rule.row,
         scale: rule.scale,
         successors: rule.successors.into_iter().map(placement_of).collect(),
     }

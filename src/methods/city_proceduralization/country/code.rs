@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::sample::{Sample, examples, templates};
 use super::{CountrySettings, components};
+use crate::arrangement::arrange;
 use crate::building_types::BuildingTypes;
 use crate::component::Component;
 use crate::detail::Detail;
@@ -58,7 +59,8 @@ pub fn code(
     let shared: Vec<InstanceRule> = Sample::rules(dictionary).into_iter().cloned().collect();
     let local = named_rules(&found, shared.len(), LOCAL);
     let rules = shared.iter().cloned().chain(local).collect();
-    let mut grammar = emit_rules(&found, rules, &Detail::from(settings.precision), false);
+    let detail = Detail::from(settings.precision);
+    let mut grammar = emit_rules(&found, rules, &detail, false);
     let shared_templates = dictionary.templates.iter().cloned();
     for (own, shared) in grammar.templates.iter_mut().zip(shared_templates) {
         *own = shared;
@@ -66,7 +68,7 @@ pub fn code(
     // The dictionary's rules first.
     let axiom = grammar.rules.iter().position(|r| r.symbol == AXIOM);
     grammar.rules[axiom.unwrap_or(0)..=shared.len()].rotate_left(1);
-    Ok(grammar)
+    Ok(arrange(&grammar, &detail.grid()))
 }
 
 /// The components of a tile with those of the types that may stand for them.

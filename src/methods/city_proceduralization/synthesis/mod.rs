@@ -24,8 +24,15 @@ use self::quilt::quilt;
 pub use self::shape::Shape;
 use self::shape::rotated;
 use self::sources::sources;
+use super::arrangement::arrange;
 use edifice_base::Watch;
-use edifice_grammar::instance::{InstanceGrammar, InstanceGrammarError, InstanceRule};
+use edifice_grammar::instance::{Grid, InstanceGrammar, InstanceGrammarError, InstanceRule};
+
+/// The grid on which copies stand: centimetres and hundredths of degrees.
+const GRID: Grid = Grid {
+    length: 100.0,
+    turn: 100.0,
+};
 
 /// A grammar over the same templates and rules whose axiom fills `shape`; buildings are named `s1`, `s2`, ....
 ///
@@ -56,21 +63,21 @@ pub fn synthesize(
             );
             let round = |v: f64, steps: f64| (v * steps).round() / steps;
             placed.at = [
-                round(copy.at[0] + x, 100.0),
-                round(copy.at[1] + y, 100.0),
+                round(copy.at[0] + x, GRID.length),
+                round(copy.at[1] + y, GRID.length),
                 // Copies stand on level ground.
-                round(placed.at[2] - source.at[2], 100.0),
+                round(placed.at[2] - source.at[2], GRID.length),
             ];
-            placed.turn = round((placed.turn + turn).rem_euclid(360.0), 100.0);
+            placed.turn = round((placed.turn + turn).rem_euclid(360.0), GRID.turn) % 360.0;
             placed.id = Some(format!("s{}", i + 1));
             placed.attributes.clear();
             successors.push(placed);
         }
     }
-    let mut out = grammar.clone();
+    let mut out = grammar.flat(None);
     for rule in out.rules.iter_mut().filter(|r| r.symbol == out.axiom) {
         let symbol = rule.symbol.clone();
         *rule = InstanceRule::new(symbol, 1.0, std::mem::take(&mut successors));
     }
-    Ok(out)
+    Ok(arrange(&out, &GRID))
 }

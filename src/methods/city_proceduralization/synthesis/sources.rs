@@ -42,7 +42,8 @@ pub(super) fn sources(
         }
     }
     // What stands right under the axiom is copied as it is, with its rule.
-    let axiom = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
+    let flat = grammar.flat(None);
+    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
     let mut whole = rustc_hash::FxHashMap::default();
     for s in axiom.iter().flat_map(|r| &r.successors) {
         if let Some(id) = &s.id {

@@ -35,7 +35,8 @@ impl<C: Coder> Rules<'_, C> {
                 .bit(&mut self.as_usual, own.symbol == other.symbol),
             // The next building often is of the same type.
             Near::Before if self.parametric => {
-                self.coder.bit(&mut self.again, own.symbol == other.symbol)
+                let again = &mut self.again[usize::from(self.in_row)];
+                self.coder.bit(again, own.symbol == other.symbol)
             }
             _ => false,
         };
@@ -51,7 +52,8 @@ impl<C: Coder> Rules<'_, C> {
             }
         };
         let is_rule = symbol >= self.templates;
-        let context = near as usize * 2 + usize::from(is_rule);
+        let near_by = if self.in_row { 4 } else { near as usize };
+        let context = near_by * 2 + usize::from(is_rule);
         let full = self.steps.turn * 360;
         let quarter = full / 4;
         let coder = &mut self.coder;
@@ -94,9 +96,8 @@ impl<C: Coder> Rules<'_, C> {
                 size: plan,
             };
             let (place, rest) = other.footprint().told(&neighbour, full);
-            let place = self.beside.code(&mut self.coder, place);
-            let models = self
-                .rest
+            let place = self.beside[usize::from(self.in_row)].code(&mut self.coder, place);
+            let models = self.rest[usize::from(self.in_row)]
                 .get_mut(place)
                 .ok_or(CompactError::Index("place"))?;
             let rest = [0, 1].map(|k| models[k].code(&mut self.coder, rest[k]));
