@@ -40,9 +40,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .column("city", Align::Left)
         .column("measure", Align::Left)
         .numbers(["value"]);
-    let cities = data::three_cities(ctx)?;
-    let (alone, mut drawn) = (cities.len() == 1, None);
-    for (name, city) in cities {
+    let mut is_drawn = false;
+    for (name, city) in data::three_cities(ctx)? {
         let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
             .map_err(Error::method)?;
         let tree = made.grammar;
@@ -86,17 +85,13 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             };
             table.row(vec![name.clone(), measure.to_owned(), text]);
         }
-        // One city says it: a real one, where there is one.
-        if drawn.is_some() {
-            continue;
-        }
-        drawn = Some(name.clone()).filter(|n| n != data::MADE || alone);
-        if drawn.is_none() {
+        // One city says it, a real one: the blocks of the made one are its motifs.
+        if name == data::MADE || std::mem::replace(&mut is_drawn, true) {
             continue;
         }
         let drawing = Drawing {
-            width: ctx.budget().choose(160, 400, 800),
-            height: ctx.budget().choose(120, 300, 600),
+            width: ctx.budget().choose(160, 320, 640),
+            height: ctx.budget().choose(120, 240, 480),
             view: View::Plan,
             around: None,
         };
