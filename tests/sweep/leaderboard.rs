@@ -175,7 +175,7 @@ fn other_facades_and_masks_prove_no_row() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path();
         let text = format!(
-            "study = \"structure_completion/complete\"\n{data}\nlearn = [\"layouts/office_*.facade.json\"]\nseeds = [1]\n\
+            "study = \"structure_completion/complete\"\n{data}\nlearn = [\"layouts/*.facade.json\"]\nseeds = [1]\n\
              [base]\nmethod = \"mirror\"\ntask = \"side50\"\nfrozen = {frozen}\n[[arm]]\nname = \"mirror side50\"\n"
         );
         std::fs::write(path.join("s.toml"), text).expect("a sweep");
