@@ -157,7 +157,7 @@ fn colours(begins: &[Begins]) -> Vec<[u8; 3]> {
     }
     let alone = |k: usize| {
         let same = |other: Option<&usize>| other == Some(&blocks[k]);
-        !same(blocks.get(k + 1)) && !(k > 0 && same(blocks.get(k - 1)))
+        !(same(blocks.get(k + 1)) || k > 0 && same(blocks.get(k - 1)))
     };
     let colour = |k: usize| match alone(k) {
         true => ALONE,
