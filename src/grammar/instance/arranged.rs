@@ -267,7 +267,7 @@ impl Arranged<'_> {
             let (sin, cos) = frame.turn.to_radians().sin_cos();
             let (along, across) = (x * cos + y * sin, y * cos - x * sin);
             placed.turn = turned(placed.turn - frame.turn, TURNS);
-            let half = self.places.length(placed) / 2.0;
+            let half = self.places.length(placed, placed.turn) / 2.0;
             let begin = end.map_or(0.0, |end: f64| end + half);
             placed.at = [along - begin, across, z].map(|v| round(v, self.within));
             end = Some(begin + placed.at[0] + half);
@@ -285,11 +285,7 @@ impl Arranged<'_> {
         let apart = |quarter: f64| {
             let turn = one.turn + 90.0 * quarter;
             let (sin, cos) = turn.to_radians().sin_cos();
-            let half = |p: &Placement| {
-                let mut own = p.clone();
-                own.turn -= turn;
-                self.places.length(&own) / 2.0
-            };
+            let half = |p: &Placement| self.places.length(p, p.turn - turn) / 2.0;
             away[0] * cos + away[1] * sin - half(one) - half(other)
         };
         let quarters = [0.0, 1.0, 2.0, 3.0].into_iter();

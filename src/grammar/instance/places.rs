@@ -54,7 +54,7 @@ impl<'g> Places<'g> {
         if rule.row {
             let mut end = None;
             for placed in placed.iter_mut().flatten() {
-                let half = self.length(placed) / 2.0;
+                let half = self.length(placed, placed.turn) / 2.0;
                 if let Some(end) = end {
                     placed.to_mut().at[0] += end + half;
                 }
@@ -64,16 +64,22 @@ impl<'g> Places<'g> {
         placed
     }
 
-    /// The length of a row that a template or a building takes: its width, or its depth if that lies rather along the row.
-    pub fn length(&self, placed: &Placement) -> f64 {
-        let [w, d] = match (self.rule(&placed.symbol), &placed.numbers[..]) {
+    /// Width and depth of a template or a building, in metres, with the factors of its rule.
+    pub fn sides(&self, placed: &Placement) -> [f64; 2] {
+        match (self.rule(&placed.symbol), &placed.numbers[..]) {
             (Some(rule), &[w, d, ..]) => {
                 let [x, y, _] = self.grammar.rules[rule].scale;
                 [w * x, d * y]
             }
             _ => [placed.size[0], placed.size[1]],
-        };
-        let quarters = (placed.turn / 90.0).round();
+        }
+    }
+
+    /// The length of a row that a template or a building takes, in metres: its width, or its depth if that lies rather along the row, to
+    /// which it is turned by `turn` degrees.
+    pub fn length(&self, placed: &Placement, turn: f64) -> f64 {
+        let [w, d] = self.sides(placed);
+        let quarters = (turn / 90.0).round();
         along_and_across(90.0 * quarters, w, d)[0]
     }
 }

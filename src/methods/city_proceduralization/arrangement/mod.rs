@@ -53,18 +53,10 @@ fn compared(a: &Placement, b: &Placement) -> std::cmp::Ordering {
 }
 
 fn rectangle(placed: &Placement, places: &Places) -> Rectangle {
-    let across = Placement {
-        turn: 90.0,
-        ..placed.clone()
-    };
-    let along = Placement {
-        turn: 0.0,
-        ..placed.clone()
-    };
     Rectangle {
         at: [placed.at[0], placed.at[1]],
         turn: placed.turn,
-        half: [along, across].map(|p| places.length(&p) / 2.0),
+        half: places.sides(placed).map(|v| v / 2.0),
     }
 }
 
