@@ -104,8 +104,7 @@ pub(crate) fn judge(
 fn typed(grammar: &InstanceGrammar) -> (City, Vec<String>) {
     let derivation = grammar.derive().unwrap_or_default();
     let flat = grammar.flat(None);
-    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
-    let symbols: BTreeMap<&str, &str> = (axiom.iter().flat_map(|r| &r.successors))
+    let symbols: BTreeMap<&str, &str> = (flat.top().into_iter().flat_map(|r| &r.successors))
         .filter_map(|s| Some((s.id.as_deref()?, s.symbol.as_str())))
         .collect();
     let kind = |id: &str| symbols.get(id).map_or(String::new(), |s| (*s).to_owned());

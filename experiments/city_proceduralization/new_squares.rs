@@ -199,8 +199,8 @@ fn copied_pairs(old: &InstanceGrammar, new: &InstanceGrammar) -> f64 {
 /// Pairs of buildings that stand together: their types, and the distance of their origins in steps of 0.1 m.
 fn pairs(grammar: &InstanceGrammar) -> Vec<(String, String, i64)> {
     let flat = grammar.flat(None);
-    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
-    let mut placed: Vec<(&str, [f64; 3])> = axiom
+    let mut placed: Vec<(&str, [f64; 3])> = flat
+        .top()
         .into_iter()
         .flat_map(|r| &r.successors)
         .map(|s| (s.symbol.as_str(), s.at))

@@ -58,7 +58,7 @@ pub fn items(ctx: &mut Context) -> Result<Vec<Item>> {
 }
 
 /// Facades at the smoke budget.
-const SMOKE: usize = 12;
+const SMOKE: usize = 6;
 
 /// The shipped layouts.
 pub fn shipped(ctx: &mut Context) -> Result<Vec<Item>> {

@@ -132,7 +132,11 @@ impl Trial for Completion {
             return Err(Error::method(Refused::LeftOut));
         }
         static MODELS: Shared<Model> = Shared::new();
-        let model = MODELS.get(key, || {
+        let is_learnt = settings.method.is_learnt();
+        let model = MODELS.get(format!("{is_learnt} {key}"), || {
+            if !is_learnt {
+                return Ok(Model::of_spacing(question.layouts.to_vec()));
+            }
             let trained = Model::train(question.layouts.to_vec(), seed, &watched.inner());
             let trained = trained.map_err(Error::method)?;
             whole(trained.model, trained.ended)

@@ -1,6 +1,7 @@
 //! Houses of random boxes, roofs, chimneys and towers: every one closed, in one piece, with the volume of the integral
-//! over its plan. `EDIFICE_FUZZ_HOUSES=10000` makes more of them.
+//! over its plan. `EDIFICE_FUZZ_HOUSES=10000` makes so many of them.
 
+use crate::cases::cases;
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::rng::stream;
@@ -55,8 +56,11 @@ fn fault(index: u64) -> Option<String> {
 #[test]
 fn random_houses_are_closed_and_have_the_volume_of_the_integral() {
     let count = std::env::var("EDIFICE_FUZZ_HOUSES").ok();
-    let count: u64 = count.map_or(1000, |c| c.parse().expect("a number of houses"));
-    let faults: Vec<String> = (0..count).into_par_iter().filter_map(fault).collect();
+    let count = count.map_or(cases(1000), |c| c.parse().expect("a number of houses"));
+    let faults: Vec<String> = (0..count as u64)
+        .into_par_iter()
+        .filter_map(fault)
+        .collect();
     assert!(
         faults.is_empty(),
         "{} of {count}: {:?}",

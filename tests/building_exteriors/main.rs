@@ -1,5 +1,8 @@
 //! Houses: attributes, learning, generation, design, files and commands.
 
+#[path = "../common/cases.rs"]
+mod cases;
+
 mod attributes;
 mod broken;
 mod coding;

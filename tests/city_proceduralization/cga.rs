@@ -104,9 +104,7 @@ fn an_attribute_changes_the_buildings_that_do_not_state_it() {
     let text = std::fs::read_to_string(&path).unwrap();
     let before = measures(&cga::read(&path).unwrap());
     let flat = grammar.flat(None);
-    let axiom = (flat.rules.iter())
-        .find(|r| r.symbol == flat.axiom)
-        .unwrap();
+    let axiom = flat.top().unwrap();
     let shapes = std::fs::read_to_string(folder.path().join("city.shapes.geojson")).unwrap();
     let shapes: serde_json::Value = serde_json::from_str(&shapes).unwrap();
     let (mut moved, mut kept) = (0, 0);

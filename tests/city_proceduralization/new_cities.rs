@@ -1,6 +1,8 @@
 //! New cities beside those that they are made from, and the measures by which they are judged.
 
-use edifice::methods::city_proceduralization::morphology::{CityPlan, Morphology, Square};
+use edifice::methods::city_proceduralization::morphology::{
+    CityPlan, Morphology, Square, under_larger,
+};
 use edifice::methods::city_proceduralization::synthesis::{Shape, synthesize};
 use edifice::methods::city_proceduralization::{Budget, Mode, proceduralize};
 use edifice::shape::triangles::{City, CityBuilding, TriangleMesh};
@@ -185,6 +187,51 @@ fn terraces_stay_terraces() {
         .unwrap();
     let again = alone.install(|| synthesize(&made.grammar, &shape, 1, &unwatched).unwrap());
     assert_eq!(first[0], again);
+}
+
+#[test]
+fn the_plan_under_larger_buildings_by_hand() {
+    let hall = house([50.0, 50.0], [40.0, 20.0, 9.0], 0.0);
+    // 3 of 10 metres of it are under the hall, which ends at 70.
+    let beside = house([72.0, 50.0], [10.0, 10.0, 6.0], 0.0);
+    let tower = house([50.0, 50.0], [6.0, 6.0, 60.0], 0.0);
+    let alone = house([150.0, 50.0], [10.0, 10.0, 6.0], 30.0);
+    let shares = |houses: Vec<TriangleMesh>| under_larger(&city(houses));
+    let empty = TriangleMesh::default();
+    let houses = vec![beside, hall.clone(), tower, alone.clone(), empty];
+    assert_eq!(shares(houses), [0.3, 0.0, 1.0, 0.0, 0.0]);
+    // Of two that are equal, the first is taken as the larger.
+    assert_eq!(shares(vec![alone.clone(), alone]), [0.0, 1.0]);
+    assert_eq!(shares(vec![hall]), [0.0]);
+    assert!(shares(Vec::new()).is_empty());
+}
+
+/// Rows of houses, each with a shed that leans into it, and towers within some of the houses.
+#[test]
+fn what_a_larger_building_covers_is_copied_only_within_its_walls() {
+    let mut houses = Vec::new();
+    for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+        let [x, y] = [30.0 * f64::from(i), 30.0 * f64::from(j)];
+        houses.push(house([x, y], [12.0, 10.0, 6.0], 0.0));
+        houses.push(house([x + 7.0, y], [6.0, 5.0, 3.0], 0.0));
+        houses.push(house([x - 2.0, y], [3.0, 3.0, 25.0], 0.0));
+    }
+    let old = city(houses);
+    let made = proceduralize(&old, &settings(Mode::Best, Budget::Level(4)), &unwatched).unwrap();
+    let side = 100.0;
+    let shape = Shape {
+        rings: vec![vec![[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]]],
+    };
+    let new = synthesize(&made.grammar, &shape, 1, &unwatched).unwrap();
+    let new = new.derive().unwrap().city(&new);
+    let high = |least: f64, most: f64| {
+        let height = |b: &CityBuilding| b.mesh.bounds().map_or(0.0, |(low, high)| high[2] - low[2]);
+        let all = new.buildings.iter().map(height);
+        all.filter(|h| (least..most).contains(h)).count()
+    };
+    assert!(high(5.0, 7.0) > 4, "houses");
+    assert!(high(20.0, 30.0) > 4, "towers");
+    assert_eq!(high(0.0, 4.0), 0, "sheds that lean into a house");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Coherent completions: made grids come back exactly, nothing overlaps, new windows stand on lines, masses do not depend on
 //! how many answers are asked for.
 
+use edifice::methods::structure_completion::layout::lines::numbers;
 use edifice::methods::structure_completion::layout::{Class, Element, Layout};
 use edifice::methods::structure_completion::made::{facades, grids};
 use edifice::methods::structure_completion::measure::{agreement, off_lines, overlaps};
@@ -81,6 +82,32 @@ fn the_mass_of_an_answer_does_not_depend_on_their_number() {
             assert_eq!(some[..], all[..count.min(all.len())]);
         }
     }
+}
+
+/// Each answer stands for its numbers of columns and rows, counted as those of the truth are: no other has them. An exact lattice is
+/// put before them.
+#[test]
+fn answers_have_different_numbers_of_columns_and_rows() {
+    let model = shipped_model().expect("the shipped model");
+    let mut several = 0;
+    for (k, (partial, _)) in cases().iter().enumerate().step_by(3) {
+        let mut rng = stream(9, "numbers", k as u64);
+        let answers = complete(Method::Best, partial, &model, 100, &mut rng);
+        let is_exact = |a: &&edifice::methods::structure_completion::completion::Completion| {
+            !a.added.is_empty() && a.added.iter().all(|e| e.probability == 0.9)
+        };
+        let found = answers.iter().filter(|a| !is_exact(a)).map(|a| {
+            let new = added(a);
+            numbers(partial.observed.iter().chain(&new))
+        });
+        let mut found: Vec<(usize, usize)> = found.collect();
+        let all = found.len();
+        several += usize::from(all > 1);
+        found.sort_unstable();
+        found.dedup();
+        assert_eq!(found.len(), all, "case {k}");
+    }
+    assert!(several > 5, "{several}");
 }
 
 #[test]

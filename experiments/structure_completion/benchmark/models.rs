@@ -12,7 +12,6 @@ use super::super::data::{self, Item};
 use super::super::folds;
 use crate::Context;
 use edifice_base::{Error, Result, Watched, unwatched};
-use edifice_structure_completion::best::learn::learn;
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::made::facades;
 use edifice_structure_completion::model::{Model, shipped_model};
@@ -54,13 +53,9 @@ struct Lesson {
 
 /// The text of a learnt model, without the paper's method.
 fn learnt(lesson: &Lesson, seed: u64) -> Result<String> {
-    let mut model = Model::of_spacing(lesson.layouts.clone());
-    let found = learn(&model, seed, &Watched::new(&unwatched)).map_err(Error::method)?;
-    model.elements = Some(found.loose);
-    model.tight = Some(found.tight);
-    model.doors = found.doors;
-    model.masses = Some(found.masses);
-    Ok(model.to_json())
+    let layouts = lesson.layouts.clone();
+    let model = Model::of_best(layouts, seed, &Watched::new(&unwatched));
+    Ok(model.map_err(Error::method)?.to_json())
 }
 
 /// Reads the facades and learns the models.

@@ -191,8 +191,7 @@ fn grouped(shown: &Read, least: Begins, what: &str) -> Result<Colouring> {
     };
     let grammar = shown.grammar.as_ref().ok_or_else(none)?;
     let flat = grammar.flat(None);
-    let top = flat.rules.iter().find(|r| r.symbol == flat.axiom);
-    let placed = top.iter().flat_map(|r| &r.successors);
+    let placed = flat.top().into_iter().flat_map(|r| &r.successors);
     let mut groups: Vec<Vec<&str>> = Vec::new();
     for (placed, begins) in placed.zip(grammar.beginnings()) {
         let id = placed.id.as_deref().unwrap_or_default();

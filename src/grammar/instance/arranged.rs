@@ -133,7 +133,7 @@ impl InstanceGrammar {
     #[must_use]
     pub fn arranged(&self, begins: &[Begins], grid: &Grid) -> Self {
         let mut out = self.clone();
-        let Some(top) = out.rules.iter_mut().find(|r| r.symbol == out.axiom) else {
+        let Some(top) = out.top_mut() else {
             return out;
         };
         let members = std::mem::take(&mut top.successors);

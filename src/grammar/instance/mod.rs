@@ -118,3 +118,15 @@ pub struct InstanceGrammar {
     /// Rules; of several with one symbol, a derivation takes the first, sampling draws by weight.
     pub rules: Vec<InstanceRule>,
 }
+
+impl InstanceGrammar {
+    /// The rule that a derivation begins with: the axiom's first.
+    pub fn top(&self) -> Option<&InstanceRule> {
+        self.rules.iter().find(|r| r.symbol == self.axiom)
+    }
+
+    /// The same, to be changed.
+    pub fn top_mut(&mut self) -> Option<&mut InstanceRule> {
+        self.rules.iter_mut().find(|r| r.symbol == self.axiom)
+    }
+}

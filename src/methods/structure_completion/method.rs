@@ -52,6 +52,11 @@ impl Method {
         matches!(self, Method::Paper | Method::Annealing)
     }
 
+    /// True if it asks more of a model than its examples and the spacing of their lines.
+    pub fn is_learnt(self) -> bool {
+        matches!(self, Method::Best | Method::Paper | Method::Annealing)
+    }
+
     /// Its name in commands.
     pub fn option(self) -> &'static str {
         match self {

@@ -117,23 +117,7 @@ impl Model {
     /// [`TrainError`] without any window.
     pub fn train(layouts: Vec<Layout>, seed: u64, watch: &Watch) -> Result<Trained, TrainError> {
         let watched = Watched::new(watch);
-        let mut model = Self::of_spacing(layouts);
-        match model.examples.len() {
-            0 => return Err(TrainError::Empty),
-            // Nothing to learn from what the rest of the database says of one facade.
-            1 => {}
-            _ => match learn(&model, seed, &watched) {
-                Ok(learnt) => {
-                    model.elements = Some(learnt.loose);
-                    model.tight = Some(learnt.tight);
-                    model.doors = learnt.doors;
-                    model.masses = Some(learnt.masses);
-                }
-                // No part was hidden yet.
-                Err(BoostingError::Empty) if watched.is_stopped() => {}
-                Err(error) => return Err(error.into()),
-            },
-        }
+        let mut model = Self::of_best(layouts, seed, &watched)?;
         if watched.goes_on(Progress::stage("densities of the scoring functions")) {
             let paper = PaperModel::train(&model.layouts(), seed, &watched.inner())?;
             model.paper = Some(paper);
@@ -142,6 +126,31 @@ impl Model {
             model,
             ended: watched.ended(),
         })
+    }
+
+    /// Learns all but the paper's method, as [`Model::train`] does.
+    ///
+    /// # Errors
+    /// [`TrainError`] without any window.
+    pub fn of_best(layouts: Vec<Layout>, seed: u64, watched: &Watched) -> Result<Self, TrainError> {
+        let mut model = Self::of_spacing(layouts);
+        match model.examples.len() {
+            0 => return Err(TrainError::Empty),
+            // Nothing to learn from what the rest of the database says of one facade.
+            1 => return Ok(model),
+            _ => {}
+        }
+        let learnt = match learn(&model, seed, watched) {
+            Ok(learnt) => learnt,
+            // No part was hidden yet.
+            Err(BoostingError::Empty) if watched.is_stopped() => return Ok(model),
+            Err(error) => return Err(error.into()),
+        };
+        model.elements = Some(learnt.loose);
+        model.tight = Some(learnt.tight);
+        model.doors = learnt.doors;
+        model.masses = Some(learnt.masses);
+        Ok(model)
     }
 
     /// Learns the spacing of lines; element probabilities are not learnt yet.

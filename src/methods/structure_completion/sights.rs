@@ -13,7 +13,8 @@
 
 use rand::RngExt;
 
-use super::partial::hidden_in;
+use super::layout::{Element, Layout};
+use super::partial::{PartialLayout, hidden_in};
 use super::task::Task;
 use edifice_base::rng::Stream;
 use edifice_shape::Rect;
@@ -74,6 +75,13 @@ impl Sight {
     /// The name of what is hidden: with and without a mask it is the same.
     pub(super) fn part(self) -> &'static str {
         self.part.name()
+    }
+
+    /// A whole layout as a partial one, and the elements that it hides.
+    pub fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
+        let rects: Vec<Rect> = layout.elements.iter().map(|e| e.rect).collect();
+        let (hidden, unknown) = self.split(layout.width, layout.height, &rects, rng);
+        PartialLayout::parted(layout, &hidden, unknown)
     }
 
     /// The elements that are hidden, and the unknown rectangles.

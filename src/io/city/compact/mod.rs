@@ -351,9 +351,8 @@ fn decoded(
             let Some(grid) = grid else {
                 return Ok(grammar);
             };
-            let top = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
             // Without this, buildings of which nothing is told would be left out.
-            if top.map_or(0, |r| r.successors.len()) != begins.len() {
+            if grammar.top().map_or(0, |r| r.successors.len()) != begins.len() {
                 return Err(CompactError::Index("building"));
             }
             let grammar = grammar.arranged(&begins, &grid);

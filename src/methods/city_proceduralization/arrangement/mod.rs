@@ -21,7 +21,7 @@ const DISTRICT: usize = 48;
 /// A flat grammar, whose buildings lie on a grid, with districts, blocks and rows.
 pub fn arrange(grammar: &InstanceGrammar, grid: &Grid) -> InstanceGrammar {
     let mut out = grammar.clone();
-    let Some(top) = out.rules.iter_mut().find(|r| r.symbol == out.axiom) else {
+    let Some(top) = out.top_mut() else {
         return out;
     };
     let mut members = std::mem::take(&mut top.successors);

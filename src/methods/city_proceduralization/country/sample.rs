@@ -93,8 +93,7 @@ pub(super) fn examples(grammar: &InstanceGrammar, first: usize) -> Vec<Vec<Compo
         .enumerate()
         .map(|(i, t)| (t.symbol.as_str(), i))
         .collect();
-    let axiom = grammar.rules.iter().find(|r| r.symbol == grammar.axiom);
-    let given = axiom.iter().flat_map(|r| &r.successors);
+    let given = grammar.top().into_iter().flat_map(|r| &r.successors);
     let given: rustc_hash::FxHashMap<&str, &Placement> =
         given.map(|p| (p.symbol.as_str(), p)).collect();
     let one = |(k, rule): (usize, &InstanceRule)| {

@@ -6,7 +6,7 @@
 mod plan;
 
 use petgraph::unionfind::UnionFind;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::plan::{Building, building, distance};
 use edifice_shape::triangles::City;
@@ -76,6 +76,26 @@ pub struct Neighbourhood {
     pub attached: bool,
     /// Distance of its walls to those of the nearest building of another block, in metres, at most [`LARGEST_GAP`].
     pub gap: f64,
+}
+
+/// Of each building of a city, the share of its plan that larger buildings cover as well; 0 of one without triangles.
+pub fn under_larger(city: &City) -> Vec<f64> {
+    let cells = |i: usize| {
+        let plan = building(&city.buildings[i].mesh);
+        plan.map_or_else(Default::default, |b| b.cells(CELL))
+    };
+    let size: Vec<usize> = (0..city.buildings.len()).map(|i| cells(i).len()).collect();
+    let mut order: Vec<usize> = (0..size.len()).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(size[i]));
+    let mut covered: FxHashSet<[i64; 2]> = FxHashSet::default();
+    let mut under = vec![0.0; size.len()];
+    for i in order {
+        let own = cells(i);
+        let shared = own.iter().filter(|c| covered.contains(*c)).count();
+        under[i] = shared as f64 / own.len().max(1) as f64;
+        covered.extend(own);
+    }
+    under
 }
 
 /// A city's buildings as the measures need them.

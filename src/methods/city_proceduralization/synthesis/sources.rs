@@ -1,6 +1,6 @@
 //! The buildings that a new city is made of: those of the grammar's city.
 
-use super::super::morphology::{CityPlan, Neighbourhood};
+use super::super::morphology::{CityPlan, Neighbourhood, under_larger};
 use super::footprint::{Footprint, footprint, open_ground};
 use edifice_grammar::instance::{
     InstanceGrammar, InstanceGrammarError, Placement, TemplateInstance,
@@ -13,7 +13,10 @@ const STEEP: f64 = 5.0;
 const NEAR: f64 = 8.0;
 /// No building reaches farther in the plan, in metres.
 const LARGEST: f64 = 5000.0;
-
+/// A building that larger ones cover by this share of its plan at least is not copied: it overlaps with a neighbour,
+const UNDER: f64 = 0.2;
+/// unless it stands within walls of theirs, as a tower on its base does: by this share at least.
+const WITHIN: f64 = 0.95;
 /// No building stands farther from the origin, in metres: beyond, cells of the plan are not told apart any more.
 const FARTHEST: f64 = 1e9;
 
@@ -43,9 +46,8 @@ pub(super) fn sources(
     }
     // What stands right under the axiom is copied as it is, with its rule.
     let flat = grammar.flat(None);
-    let axiom = flat.rules.iter().find(|r| r.symbol == flat.axiom);
     let mut whole = rustc_hash::FxHashMap::default();
-    for s in axiom.iter().flat_map(|r| &r.successors) {
+    for s in flat.top().into_iter().flat_map(|r| &r.successors) {
         if let Some(id) = &s.id {
             whole.entry(id.as_str()).or_insert_with(Vec::new).push(s);
         }
@@ -99,6 +101,12 @@ pub(super) fn sources(
             ..CityBuilding::default()
         });
     }
+    let under = under_larger(&city);
+    let stands = |share: &f64| !(UNDER..WITHIN).contains(share);
+    let mut each = under.iter();
+    out.retain(|_| each.next().is_some_and(stands));
+    let mut each = under.iter();
+    city.buildings.retain(|_| each.next().is_some_and(stands));
     let plan = CityPlan::new(&city);
     for (i, neighbourhood) in plan.neighbourhoods() {
         out[i].neighbourhood = Some(neighbourhood);

@@ -19,6 +19,7 @@ use super::observation::{Observation, of};
 use super::regular::{clash, regular, without_loners};
 use super::rows;
 use crate::completion::Reason;
+use crate::layout::lines::numbers;
 use crate::layout::{Class, Element};
 use edifice_shape::Axis;
 
@@ -34,8 +35,8 @@ pub struct Layout {
     pub added: Vec<(Element, Reason, usize)>,
     /// Expected score, 0 to 1.
     pub score: f64,
-    /// Columns and rows of its windows and the seen ones.
-    pub lattice: (usize, usize),
+    /// Columns and rows of its windows and the seen ones, counted as those of an annotation are ([`numbers`]).
+    pub numbers: (usize, usize),
 }
 
 /// A judge of layouts by the values of their candidates.
@@ -139,10 +140,10 @@ impl<'a> Judge<'a> {
             let kept = whole(&added).added.into_iter();
             added = kept.map(|(e, r, k)| (e, r, added[k].2)).collect();
         }
-        let lines = whole(&added).lines;
+        let seen = &self.observation.partial.observed;
         Layout {
             score: self.score(added.iter().map(|a| a.2)),
-            lattice: (lines[0].all.len(), lines[1].all.len()),
+            numbers: numbers(seen.iter().chain(added.iter().map(|a| &a.0))),
             added,
         }
     }

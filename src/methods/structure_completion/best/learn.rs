@@ -12,7 +12,7 @@ use super::pool::{pool, weights};
 use crate::layout::{Class, Element, Layout};
 use crate::measure::agreement;
 use crate::model::Model;
-use crate::task::Task;
+use crate::sights::Sight;
 use edifice_base::rng::stream;
 use edifice_base::{Progress, Watched};
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
@@ -75,42 +75,22 @@ type DoorRows = (Vec<Vec<f64>>, Vec<f64>);
 /// Numbers of columns and rows: the features of each pair, and whether the layout has them.
 type MassRows = (Vec<Vec<f64>>, Vec<f64>);
 
-/// A layout with a part hidden; without a mask all that is not seen is unknown.
+/// A layout with a part hidden.
 #[derive(Clone, Copy)]
 struct Unit {
     index: usize,
-    task: Task,
-    masked: bool,
+    sight: Sight,
 }
 
-impl Unit {
-    /// A layout with each part hidden, and where that is a region also without a mask, as the paper's own input is.
-    fn of(index: usize) -> impl Iterator<Item = Unit> {
-        let both = Task::ALL
-            .into_iter()
-            .flat_map(|task| [(task, true), (task, false)]);
-        both.filter(|(task, masked)| *masked || !matches!(task, Task::R20 | Task::R50))
-            .map(move |(task, masked)| Unit {
-                index,
-                task,
-                masked,
-            })
-    }
-}
-
-/// Features and truth of all candidates of one layout with a part hidden.
+/// Features and truth of all candidates of one layout with a part hidden; none where the part holds nothing.
 fn rows(model: &Model, unit: Unit, without: &[usize], seed: u64) -> (Rows, DoorRows, MassRows) {
-    let Unit {
-        index,
-        task,
-        masked,
-    } = unit;
+    let Unit { index, sight } = unit;
     let layout = &model.examples[index].layout;
-    let place = 2 * (index * Task::ALL.len() + task as usize) + usize::from(!masked);
-    let mut rng = stream(seed, "structure completion: learning", place as u64);
-    let (mut partial, hidden) = task.hide(layout, &mut rng);
-    if !masked {
-        partial.unknown = None;
+    let name = format!("structure completion: learning, {}", sight.name());
+    let mut rng = stream(seed, &name, index as u64);
+    let (partial, hidden) = sight.hide(layout, &mut rng);
+    if hidden.is_empty() {
+        return Default::default();
     }
     let draws = pool(&partial, model, without, &mut rng);
     let fallback = model.window_size(partial.width, partial.height);
@@ -168,7 +148,7 @@ fn thinned<T>(parts: Vec<(Vec<Vec<f64>>, Vec<T>)>, most: usize) -> (Vec<Vec<f64>
 const OVERLAPS: [f64; 2] = [0.5, 0.75];
 
 /// Learns element probabilities at an intersection over union of 0.5 and of 0.75: every layout of the database is completed
-/// with each part hidden, with and without a mask, from the rest of the database without its near-twins. Stopped, from the parts
+/// with each part hidden ([`Sight::all`]), from the rest of the database without its near-twins. Stopped, from the parts
 /// that were hidden until then.
 ///
 /// # Errors
@@ -176,7 +156,12 @@ const OVERLAPS: [f64; 2] = [0.5, 0.75];
 pub fn learn(model: &Model, seed: u64, watched: &Watched) -> Result<Learnt, BoostingError> {
     let layouts: Vec<Layout> = model.examples.iter().map(|e| e.layout.clone()).collect();
     let group = twins(&layouts);
-    let units: Vec<Unit> = (0..layouts.len()).flat_map(Unit::of).collect();
+    let sights = Sight::all();
+    let units = (0..layouts.len()).flat_map(|index| {
+        let of = |&sight: &Sight| Unit { index, sight };
+        sights.iter().map(of).collect::<Vec<Unit>>()
+    });
+    let units: Vec<Unit> = units.collect();
     let done = AtomicU64::new(0);
     let parts: Vec<(Rows, DoorRows, MassRows)> = units
         .par_iter()

@@ -28,7 +28,7 @@ pub fn shares(draws: &[Draw], weights: &[f64]) -> BTreeMap<Lattice, f64> {
         .zip(weights)
         .filter(|(d, _)| d.origin.is_whole());
     for (draw, weight) in whole {
-        *shares.entry(draw.lattice).or_default() += weight;
+        *shares.entry(draw.numbers).or_default() += weight;
     }
     shares
 }

@@ -80,11 +80,11 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         .zip(&weights)
         .filter(|(d, _)| d.origin.is_whole())
     {
-        modes.add(judge.on_lattice(&draw.lines), *weight, draw.lattice);
+        modes.add(judge.on_lattice(&draw.lines), *weight, draw.numbers);
     }
     let freely = judge.freely();
-    let lattice = freely.lattice;
-    modes.add(freely, 0.0, lattice);
+    let numbers = freely.numbers;
+    modes.add(freely, 0.0, numbers);
     let probability = |c: usize| loose[c].clamp(0.0, 1.0);
     let learnt = model.masses.as_ref().map(|learnt| {
         let shares = masses::shares(&draws, &weights);
@@ -196,10 +196,10 @@ fn expected(draws: &[Draw], weights: &[f64]) -> f64 {
 struct Modes(BTreeMap<(usize, usize), (Option<Layout>, f64)>);
 
 impl Modes {
-    /// Adds the weight of a draw to the mode of its lattice, and the layout that was chosen on it to that of its own.
-    fn add(&mut self, layout: Layout, weight: f64, lattice: (usize, usize)) {
-        self.0.entry(lattice).or_default().1 += weight;
-        let own = &mut self.0.entry(layout.lattice).or_default().0;
+    /// Adds the weight of a draw to the mode of its numbers, and the layout that was chosen on its lattice to that of the layout's.
+    fn add(&mut self, layout: Layout, weight: f64, numbers: (usize, usize)) {
+        self.0.entry(numbers).or_default().1 += weight;
+        let own = &mut self.0.entry(layout.numbers).or_default().0;
         if own.as_ref().is_none_or(|best| layout.score > best.score) {
             *own = Some(layout);
         }

@@ -14,6 +14,7 @@ use super::transfer;
 use crate::baselines::lattice;
 use crate::completion::Reason;
 use crate::layout::Element;
+use crate::layout::lines::numbers;
 use crate::model::{Example, Model};
 use crate::partial::PartialLayout;
 use edifice_base::rng::Stream;
@@ -76,6 +77,8 @@ pub struct Draw {
     pub added: Vec<(Element, Reason)>,
     /// Columns and rows of its lattice.
     pub lattice: (usize, usize),
+    /// Columns and rows of its windows and the seen ones, counted as those of an annotation are ([`numbers`]).
+    pub numbers: (usize, usize),
     /// Centres of the columns and of the rows on which its windows and the seen ones stand.
     pub lines: [Vec<f64>; 2],
 }
@@ -142,6 +145,7 @@ pub fn pool(
                 weight: count as f64,
                 added: images.clone(),
                 lattice: (mirrored.columns.len(), mirrored.rows.len()),
+                numbers: Default::default(),
                 lines: Default::default(),
             });
             for (k, invented) in column_draws(&mirrored, &model.columns, 2 * count, rng)
@@ -167,6 +171,7 @@ pub fn pool(
         weight: 1.0,
         added: open.added.iter().map(|a| (a.element, a.reason)).collect(),
         lattice: (observation.columns.len(), observation.rows.len()),
+        numbers: Default::default(),
         lines: Default::default(),
     });
     for draw in &mut draws {
@@ -175,6 +180,12 @@ pub fn pool(
         draw.added = added.map(|(e, reason, _)| (e, reason)).collect();
         draw.lines = made.lines.map(|l| l.all.iter().map(|l| l.at).collect());
         draw.lattice = (draw.lines[0].len(), draw.lines[1].len());
+        draw.numbers = numbers(
+            partial
+                .observed
+                .iter()
+                .chain(draw.added.iter().map(|a| &a.0)),
+        );
     }
     for origin in Origin::ALL {
         let total: f64 = draws
@@ -258,6 +269,7 @@ fn whole<R: Rng>(
         origin,
         weight: 1.0,
         lattice: (columns.len(), rows.len() + count.unwrap_or(0)),
+        numbers: Default::default(),
         lines: Default::default(),
         added,
     }
@@ -286,6 +298,7 @@ fn warped(observation: &Observation, examples: &[(usize, &Example)]) -> Vec<Draw
             .map(|e| (*e, Reason::Database))
             .collect(),
         lattice,
+        numbers: Default::default(),
         lines: Default::default(),
     };
     found.into_iter().map(draw).collect()

@@ -1,5 +1,6 @@
 //! Lines of a lattice: where the columns and rows of elements lie along one axis.
 
+use super::{Class, Element};
 use edifice_shape::{Axis, Rect};
 
 /// Elements are on one line when their centres differ by less than this share of their typical extent.
@@ -50,6 +51,16 @@ pub fn lines(rects: &[Rect], axis: Axis) -> (Vec<LatticeLine>, Vec<usize>) {
         line.size /= line.count as f64;
     }
     (lines, of)
+}
+
+/// Numbers of columns and of rows of the windows among elements.
+pub fn numbers<'a>(elements: impl IntoIterator<Item = &'a Element>) -> (usize, usize) {
+    let windows = elements.into_iter().filter(|e| e.class == Class::Window);
+    let windows: Vec<Rect> = windows.map(|e| e.rect).collect();
+    (
+        lines(&windows, Axis::X).0.len(),
+        lines(&windows, Axis::Y).0.len(),
+    )
 }
 
 /// The lower median; `None` of nothing.
