@@ -35,10 +35,10 @@ fn database(folder: &Path, count: usize) -> PathBuf {
 fn learn_show_sample_complete_evaluate() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let houses = database(folder.path(), 30);
+    let houses = database(folder.path(), 16);
     let houses = houses.to_string_lossy();
     let table = text(&mut edifice(&["attributes", &houses]));
-    assert_eq!(table.lines().count(), 31);
+    assert_eq!(table.lines().count(), 17);
     assert_eq!(table.lines().next().unwrap().split(',').count(), 49);
 
     let learn = |to: &str, threads: &str| {
@@ -98,7 +98,7 @@ fn learn_show_sample_complete_evaluate() {
         "-n",
         "1",
     ];
-    assert_eq!(text(&mut edifice(&keep)).lines().count(), 31);
+    assert_eq!(text(&mut edifice(&keep)).lines().count(), 17);
     let evaluate = [
         "evaluate",
         &houses,

@@ -230,7 +230,7 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn one_and_two_threads_write_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let (header, rows) = table(folder.path(), 5);
+    let (header, rows) = table(folder.path(), 3);
     let lines: Vec<String> = std::iter::once(&header)
         .chain(&rows)
         .map(|r| r.join(","))
@@ -251,7 +251,7 @@ fn one_and_two_threads_write_the_same_bytes() {
         contents(&folder.path().join(to))
     };
     let (one, two) = (build("one", "1"), build("two", "2"));
-    assert_eq!(one.len(), 5 * 7 + 2);
+    assert_eq!(one.len(), 3 * 7 + 2);
     for (a, b) in one.iter().zip(&two) {
         assert!(a == b, "{}", a.0);
     }

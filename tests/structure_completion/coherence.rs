@@ -74,7 +74,8 @@ fn the_mass_of_an_answer_does_not_depend_on_their_number() {
         };
         let all = answers(100);
         let mass: f64 = all.iter().map(|a| a.mass).sum();
-        assert!(mass <= 1.0 + 1e-9, "{mass}");
+        // Half of what the learnt probabilities leave belongs to the answers.
+        assert!((0.5 - 1e-9..=1.0 + 1e-9).contains(&mass), "{mass}");
         let best = all.iter().map(|a| a.score).fold(0.0, f64::max);
         assert_eq!(all[0].score, best);
         for count in [1, 2, 5] {

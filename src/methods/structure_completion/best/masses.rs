@@ -4,7 +4,7 @@
 //! seen ones stand on so many lines. Shares are no probabilities: the draws know nothing of an annotation's errors, and
 //! of lines that no rule foresees. So boosted trees give `p(c, r)` from `s(c, r)`, its margins, its rank and what is seen,
 //! learnt on whole layouts with parts hidden; the probabilities of all pairs are scaled down where they sum to more than 1.
-//! They may sum to less: the rest is for numbers that no draw has.
+//! They may sum to less: of the rest, half goes to the answers in equal parts ([`super::modes`]).
 
 use std::collections::BTreeMap;
 

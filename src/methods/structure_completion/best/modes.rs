@@ -27,6 +27,9 @@ use edifice_base::rng::Stream;
 const COUNTED: [f64; 7] = [0.0, 0.35, 0.15, 0.45, 0.05, 0.0, 0.0];
 /// Probability of the exact lattice where the seen windows are cells of one: it is also the mass of that answer.
 const EXACT: f64 = 0.9;
+/// Learnt masses may sum to less than 1. Of what is left, this share belongs to the answers in equal parts, the rest to numbers that no
+/// answer has: facades of other sets than those of the database surprise, and an answer of a small share is right more often than there.
+const UNFORESEEN: f64 = 0.5;
 /// Least probability of a door that is added because there is none.
 const LEAST_DOOR: f64 = 0.08;
 /// Of an element that is as probable within a half as of one, this share is so within three quarters, where no model of
@@ -230,6 +233,9 @@ impl Modes {
             for (lattice, _, mass) in &mut kept {
                 *mass = learnt.get(lattice).copied().unwrap_or(0.0);
             }
+            let left = 1.0 - kept.iter().map(|k| k.2).sum::<f64>();
+            let each = UNFORESEEN * left.max(0.0) / kept.len().max(1) as f64;
+            kept.iter_mut().for_each(|k| k.2 += each);
         }
         kept.sort_by(|a, b| b.1.score.total_cmp(&a.1.score).then(a.0.cmp(&b.0)));
         if let Some(others) = kept.get_mut(1..) {
