@@ -193,6 +193,27 @@ fn volumetric_overlap_of_boxes_is_analytic() {
     assert_eq!(VolumeRaster { size: 1.0 }.compare(&[], &[]).iou(), 1.0);
 }
 
+/// A few enormous triangles, as a damaged file has them, are compared in large cells; a town as large in the cells that were asked for.
+#[test]
+fn cells_are_coarsened_for_few_enormous_triangles_only() {
+    let slab = |x: f64, y: f64, side: f64| solid_box([x, y, 0.0], [x + side, y + side, 9.0], 0.0);
+    let raster = VolumeRaster { size: 0.5 };
+    let size = |set: &[&TriangleMesh]| raster.fitted(set, set).size;
+    let hall = slab(0.0, 0.0, 1000.0);
+    assert_eq!(size(&[&hall]), 0.5);
+    let enormous = slab(0.0, 0.0, 30_000.0);
+    assert_eq!(size(&[&enormous]), 16.0);
+    let found = raster.compare(&[&enormous], &[&enormous]);
+    assert_eq!(found.iou(), 1.0);
+    assert!((found.first / 8.1e9 - 1.0).abs() < 1e-9, "{}", found.first);
+    let place = |k: usize| [k % 60, k / 60].map(|v| 50.0 * v as f64);
+    let town: Vec<TriangleMesh> = (0..3600)
+        .map(|k| slab(place(k)[0], place(k)[1], 49.0))
+        .collect();
+    let town: Vec<&TriangleMesh> = town.iter().collect();
+    assert_eq!(size(&town), 0.5);
+}
+
 #[test]
 fn the_box_of_a_turned_box_is_itself() {
     for seed in 0..200 {

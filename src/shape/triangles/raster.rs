@@ -13,6 +13,10 @@ use super::TriangleMesh;
 /// Most columns that triangles cross in all, and most cells along a side: cells are coarsened until that holds, so that
 /// coordinates far away, which a damaged file gives, take neither memory nor time.
 const MOST_CROSSINGS: f64 = 6e8;
+/// Few triangles cross at most so many, and for each triangle so many more: those of a city cross some hundred columns each, and a
+/// handful of enormous ones is not worth minutes.
+const FEW_CROSSINGS: f64 = 5e7;
+const CROSSINGS_EACH: f64 = 1e4;
 const MOST_CELLS: f64 = 131_072.0;
 /// Rows of cells that are measured at once: bounds the memory.
 const STRIP: i64 = 128;
@@ -57,21 +61,22 @@ impl VolumeRaster {
     /// A raster for solids: this one, or, where they are too large for it, the finest of twice, four times ... its cells that is not.
     pub fn fitted(&self, first: &[&TriangleMesh], second: &[&TriangleMesh]) -> Self {
         let (mut area, mut low, mut high) = (0.0, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let mut triangles = 0;
         for mesh in first.iter().chain(second) {
             area += mesh
                 .corners()
                 .map(|t| super::mesh::plan_area(&t).abs())
                 .sum::<f64>();
+            triangles += mesh.triangles.len();
             if let Some((l, h)) = mesh.bounds() {
                 low = [0, 1].map(|k| low[k].min(l[k]));
                 high = [0, 1].map(|k| high[k].max(h[k]));
             }
         }
         let extent = (high[0] - low[0]).max(high[1] - low[1]);
+        let most = (FEW_CROSSINGS + CROSSINGS_EACH * triangles as f64).min(MOST_CROSSINGS);
         let mut size = self.size;
-        while size.is_finite()
-            && (area / (size * size) > MOST_CROSSINGS || extent / size > MOST_CELLS)
-        {
+        while size.is_finite() && (area / (size * size) > most || extent / size > MOST_CELLS) {
             size *= 2.0;
         }
         Self { size }
