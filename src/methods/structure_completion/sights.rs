@@ -96,6 +96,13 @@ impl Sight {
     }
 }
 
+impl Task {
+    /// As [`Sight::hide`], with a mask where the task has one.
+    pub fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
+        Sight::of(self).hide(layout, rng)
+    }
+}
+
 impl Part {
     fn name(self) -> &'static str {
         match self {

@@ -4,8 +4,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use super::layout::{Element, Layout};
-use super::partial::{PartialLayout, hidden_in};
+use super::partial::hidden_in;
 use edifice_base::rng::Stream;
 use edifice_shape::Rect;
 
@@ -99,12 +98,5 @@ impl Task {
             }
         };
         (hidden, unknown)
-    }
-
-    /// A whole layout as a partial one, and the elements that it hides.
-    pub fn hide(self, layout: &Layout, rng: &mut Stream) -> (PartialLayout, Vec<Element>) {
-        let rects: Vec<Rect> = layout.elements.iter().map(|e| e.rect).collect();
-        let (hidden, unknown) = self.split(layout.width, layout.height, &rects, rng);
-        PartialLayout::parted(layout, &hidden, unknown)
     }
 }

@@ -13,11 +13,11 @@ use super::TriangleMesh;
 /// Most columns that triangles cross in all, and most cells along a side: cells are coarsened until that holds, so that
 /// coordinates far away, which a damaged file gives, take neither memory nor time.
 const MOST_CROSSINGS: f64 = 6e8;
+const MOST_CELLS: f64 = 131_072.0;
 /// Few triangles cross at most so many, and for each triangle so many more: those of a city cross some hundred columns each, and a
 /// handful of enormous ones is not worth minutes.
 const FEW_CROSSINGS: f64 = 5e7;
 const CROSSINGS_EACH: f64 = 1e4;
-const MOST_CELLS: f64 = 131_072.0;
 /// Rows of cells that are measured at once: bounds the memory.
 const STRIP: i64 = 128;
 
