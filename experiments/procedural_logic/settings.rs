@@ -15,6 +15,7 @@ enum Measure {
     CommonRules,
     AllRules,
     RuleUnion,
+    Lattice,
 }
 
 /// Reading of `W` in Eq. 3.
@@ -97,5 +98,6 @@ pub(super) fn measure(settings: &Retrieval) -> logic::Measure {
         Measure::CommonRules => logic::Measure::CommonRules,
         Measure::AllRules => logic::Measure::AllRules,
         Measure::RuleUnion => logic::Measure::RuleUnion,
+        Measure::Lattice => logic::Measure::Lattice,
     }
 }

@@ -67,7 +67,7 @@ impl Logic {
         self.inner.layout(known).map(Facade::plain).map_err(failed)
     }
 
-    /// Distances between all facades, `(n, n)`: `powerset`, `common_rules`, `all_rules` or `rule_union` (Sec. 4.3).
+    /// Distances between all facades, `(n, n)`: `powerset`, `common_rules`, `all_rules` or `rule_union` (Sec. 4.3), or `lattice`.
     #[pyo3(signature = (measure = "powerset"))]
     fn distances<'py>(
         &self,

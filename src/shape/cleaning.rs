@@ -23,7 +23,7 @@ mod specks;
 
 use super::{Axis, LabelGrid};
 
-pub use lattice::on_lattice;
+pub use lattice::{DoorPlace, Lattice, on_lattice};
 pub use specks::absorb_specks;
 
 /// The label image without specks and with straight edges; a `tolerance` of 0 changes nothing.

@@ -44,7 +44,9 @@ pub use building::{
 };
 pub use building_error::BuildingError;
 pub use building_plan::{PlanEdge, PlanUnion, Soundness, Visibility, visibility};
-pub use cleaning::{ToleranceError, absorb_specks, clean, on_lattice, straighten};
+pub use cleaning::{
+    DoorPlace, Lattice, ToleranceError, absorb_specks, clean, on_lattice, straighten,
+};
 pub use components::{Component, components};
 pub use cuts::Cuts;
 pub use decompose::{Decomposition, decompose};

@@ -177,4 +177,5 @@ pub(super) const MEASURES: &[Choice<Measure>] = &[
     ("common-rules", "Chi-square over the rules that two facades share", Measure::CommonRules),
     ("all-rules", "Chi-square over the rules of two facades", Measure::AllRules),
     ("rule-union", "Rules of both facades together over the sum of the rules of each", Measure::RuleUnion),
+    ("lattice", "Floors, window columns, running balconies and places of doors that differ, read off the labels without rules", Measure::Lattice),
 ];

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::parse::{BinaryNode, BinaryTree};
 use super::rules::{Call, RuleSet};
 use edifice_cluster::{Histogram, chi_square};
+use edifice_shape::Lattice;
 
 /// An element of the powerset of operations and labels: bit 0 the split along x, bit 1 the split
 /// along y, bit `2 + l` label `l`; without trailing zero words.
@@ -18,14 +19,17 @@ pub struct Profile {
     pub powerset: Histogram<AssetSet>,
     /// Number of applications of each rule.
     pub rules: Histogram<u32>,
+    /// Rows and columns of its windows, without any rule.
+    pub lattice: Lattice,
 }
 
 impl Profile {
-    /// The profile of a facade from its binary split tree and its starting rule.
-    pub fn new(tree: &BinaryTree, rules: &RuleSet, start: Call) -> Self {
+    /// The profile of a facade from its binary split tree, its starting rule and its lattice.
+    pub fn new(tree: &BinaryTree, rules: &RuleSet, start: Call, lattice: Lattice) -> Self {
         Self {
             powerset: Histogram::count(asset_sets(tree)),
             rules: Histogram::count(rules.applied(start)),
+            lattice,
         }
     }
 }
@@ -43,15 +47,20 @@ pub enum Measure {
     AllRules,
     /// The ratio of Eq. 14: rules of both together to the sum of the rules of each, 1/2 to 1.
     RuleUnion,
+    /// Number of architectural changes between the lattices of both ([`Lattice::changes`]). Not of the paper: it knows
+    /// no rule, and counts what Sec. 5.4 calls different as far as the labels tell it. Facades without a label
+    /// `window` are all equal.
+    Lattice,
 }
 
 impl Measure {
-    /// All four measures.
-    pub const ALL: [Self; 4] = [
+    /// All measures, those of the paper first.
+    pub const ALL: [Self; 5] = [
         Self::Powerset,
         Self::CommonRules,
         Self::AllRules,
         Self::RuleUnion,
+        Self::Lattice,
     ];
 
     /// Name in files and on the command line.
@@ -61,6 +70,7 @@ impl Measure {
             Self::CommonRules => "common_rules",
             Self::AllRules => "all_rules",
             Self::RuleUnion => "rule_union",
+            Self::Lattice => "lattice",
         }
     }
 
@@ -84,6 +94,7 @@ impl Measure {
                 let total = (one + other).max(1);
                 (total - shared) as f64 / total as f64
             }
+            Self::Lattice => a.lattice.changes(&b.lattice) as f64,
         }
     }
 

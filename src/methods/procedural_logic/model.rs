@@ -11,7 +11,7 @@ use super::nary::NaryTree;
 use super::parameters::{ParameterError, Parameters};
 use super::parse::{BinaryTree, NoSplit, parse};
 use super::rules::{Instance, InstanceError};
-use edifice_shape::{Facade, GridError, LabelGrid};
+use edifice_shape::{Facade, GridError, LabelGrid, Lattice};
 
 /// Most labels that a model is fitted to: affinities take the square of their number.
 const MOST_LABELS: usize = 4096;
@@ -149,6 +149,7 @@ impl Model {
                 &tree,
                 &self.inference.rules,
                 known.instance.start,
+                Lattice::read(&grid),
             ))
         };
         self.facades.iter().map(profile).collect()

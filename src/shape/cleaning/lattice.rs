@@ -1,11 +1,14 @@
 //! Rows and columns from element boxes: what a segmentation says about the structure of a facade.
 //!
 //! Segmentations move every edge of every window by itself. Here windows are put back on common lines:
-//! 1. The bounding boxes of connected areas labelled `window` (small ones are specks) are clustered: *floors* by the height
+//! 1. The bounding boxes of connected areas labelled `window` (small ones are specks; what a balcony hides of a window belongs
+//!    to it) are clustered: *floors* by the height
 //!    of their centres, *columns* by the abscissa of their centres; a cluster ends where the next centre is more than half a
 //!    median window away. Floors get the median bottom and top of their boxes, columns the median left and right.
-//! 2. A floor has a window in a column where it has a box; where it has one in most columns, in all.
-//! 3. Balconies belong to the floor whose windows they overlap or carry. One that is at least half as wide as the
+//!    A column has windows on two fifths of the floors; those of an attic between the columns make none.
+//! 2. A floor has a window in a column where it has a box; where it has one in most columns, in all. Windows in no column
+//!    stay on their floor, as wide as the others above and below them.
+//! 3. Balconies belong to the floor whose windows they overlap or carry. One that is at least four fifths as wide as the
 //!    facade is *running* and reaches from side to side; others take the columns that they cover, and a floor with balconies in most
 //!    columns has them in all. Bottom and top are medians.
 //! 4. Behind them lie horizontal *bands*: the label of `sky`, `roof`, `wall`, `shop` and the like that most of each row shows.
@@ -14,180 +17,193 @@
 //! All of it is painted in this order: bands, windows, balconies, door. Labels of other kinds are not kept.
 //! A picture whose windows lie on these lines already is given back as it is: exact labels stay exact.
 
+mod balconies;
 mod bands;
+mod boxes;
+mod paint;
 
-use crate::{LabelGrid, Span, components};
+use crate::LabelGrid;
 
+use balconies::{Balconies, balconies};
 use bands::bands;
-
-/// A window smaller than this share of the median one is a speck.
-const SPECK: f64 = 0.3;
+use boxes::{Box4, behind_balconies, boxes, clusters, middle, without_specks};
+use paint::paint;
 
 /// The share of columns from which on all have what these have.
 const MOST: f64 = 0.7;
 
-/// A balcony this wide, as a share of the facade, runs from side to side.
-const RUNNING: f64 = 0.5;
+/// A column has windows on this share of the floors.
+const OF_FLOORS: f64 = 0.4;
 
-/// A box: left, right, bottom, top.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Box4 {
-    x: [f64; 2],
-    y: [f64; 2],
+/// A door this near to the end of a facade, as a share of its width, stands at the end.
+const AT_END: f64 = 0.02;
+
+/// The place of a door among the elements of a ground floor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DoorPlace {
+    /// At the left end of the facade.
+    Left,
+    /// Between other elements.
+    Between,
+    /// At the right end of the facade.
+    Right,
 }
 
-impl Box4 {
-    fn area(&self) -> f64 {
-        (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
+/// The rows and columns of a facade (see the module's first page).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lattice {
+    /// Lower and upper side of the windows of each floor that has some, from the bottom up, in the unit of the picture.
+    pub rows: Vec<[f64; 2]>,
+    /// Left and right side of the windows of each column, from the left.
+    pub columns: Vec<[f64; 2]>,
+    /// True if a ground floor without windows, of shops or a door, lies below the first row.
+    pub windowless_ground: bool,
+    /// The place of the largest door.
+    pub door: Option<DoorPlace>,
+    /// Floors with a balcony from side to side, the ground floor is 0.
+    pub running: Vec<usize>,
+    /// Columns of windows that are no column of the facade, such as those of an attic.
+    loose: Vec<[f64; 2]>,
+    /// For each row the columns that have a window, then the loose ones.
+    windows: Vec<Vec<bool>>,
+    balconies: Vec<Balconies>,
+    largest_door: Option<Box4>,
+    /// True if each window of the picture is as its row and its column say.
+    exact: bool,
+}
+
+impl Lattice {
+    /// Reads the lattice off a label picture; a picture without windows has neither rows nor columns.
+    /// `O(cells)` and a little for each element.
+    pub fn read(grid: &LabelGrid) -> Self {
+        let all = boxes(grid);
+        let of = |label: &str| -> Vec<Box4> {
+            let label = number(grid, label);
+            let own = all.iter().filter(|(l, _)| Some(*l) == label);
+            own.map(|(_, b)| *b).collect()
+        };
+        let (width, height) = (grid.xs[grid.columns()], grid.ys[grid.rows()]);
+        let on_walls = without_specks(of("balcony"));
+        let found = behind_balconies(&of("window"), &on_walls, width.max(height));
+        let whole: Vec<Box4> = found.iter().map(|w| w.whole).collect();
+        let seen: Vec<Box4> = found.iter().map(|w| w.seen).collect();
+        let floors = clusters(&whole, |b| b.y);
+        let on = |column: &[usize], floor: &[usize]| column.iter().any(|w| floor.contains(w));
+        let (columns, loose): (Vec<_>, Vec<_>) =
+            clusters(&whole, |b| b.x).into_iter().partition(|column| {
+                let floors_of = floors.iter().filter(|floor| on(column, floor)).count();
+                floors_of as f64 >= OF_FLOORS * floors.len() as f64
+            });
+        let middles = |groups: &[Vec<usize>], boxes: &[Box4], side: fn(&Box4) -> [f64; 2]| {
+            let middles = groups.iter().map(|group| middle(group, boxes, side));
+            middles.collect::<Vec<_>>()
+        };
+        let rows = middles(&floors, &whole, |b| b.y);
+        let exact = |groups: &[Vec<usize>], side: fn(&Box4) -> [f64; 2]| {
+            let mut placed = groups.iter().zip(middles(groups, &seen, side));
+            placed.all(|(group, line)| group.iter().all(|&w| side(&seen[w]) == line))
+        };
+        let spans = middles(&columns, &whole, |b| b.x);
+        let balconies = balconies(&on_walls, &rows, &spans, width);
+        let doors = of("door");
+        let below_windows = |b: &Box4| {
+            rows.first()
+                .is_some_and(|row| 2.0 * b.y[1] <= row[0] + row[1])
+        };
+        let windowless_ground = doors.iter().chain(&of("shop")).any(below_windows);
+        let running = balconies.iter().enumerate();
+        let running = running.filter(|(_, on)| matches!(on, Balconies::Running(_)));
+        let largest_door = doors
+            .into_iter()
+            .max_by(|a, b| a.area().total_cmp(&b.area()));
+        Self {
+            door: largest_door.map(|door| place(&door, width)),
+            running: running
+                .map(|(row, _)| row + usize::from(windowless_ground))
+                .collect(),
+            windows: floors
+                .iter()
+                .map(|floor| {
+                    let has = |groups: &[Vec<usize>]| groups.iter().map(|c| on(c, floor)).collect();
+                    [filled(has(&columns)), has(&loose)].concat()
+                })
+                .collect(),
+            exact: exact(&floors, |b| b.y) && exact(&columns, |b| b.x) && exact(&loose, |b| b.x),
+            loose: middles(&loose, &whole, |b| b.x),
+            columns: spans,
+            windowless_ground,
+            balconies,
+            largest_door,
+            rows,
+        }
+    }
+
+    /// Number of floors, a ground floor without windows included.
+    pub fn floors(&self) -> usize {
+        self.rows.len() + usize::from(self.windowless_ground)
+    }
+
+    /// Number of architectural changes between two facades (Weissenberg et al. 2013, Sec. 5.4: "number of floors, window
+    /// columns, door placement and location of running balconies").
+    pub fn changes(&self, other: &Self) -> usize {
+        let missing =
+            |from: &[usize], of: &[usize]| from.iter().filter(|f| !of.contains(f)).count();
+        self.floors().abs_diff(other.floors())
+            + self.columns.len().abs_diff(other.columns.len())
+            + usize::from(self.door != other.door)
+            + missing(&self.running, &other.running)
+            + missing(&other.running, &self.running)
     }
 }
 
 /// The facade on common rows and columns (see the module's first page). A picture without windows, or whose windows
 /// lie on common lines already, comes back unchanged. `O(cells)` and a little for each element.
 pub fn on_lattice(grid: &LabelGrid) -> LabelGrid {
-    let number = |name: &str| {
-        grid.labels
-            .iter()
-            .position(|l| l.eq_ignore_ascii_case(name))
-    };
-    let Some(window) = number("window") else {
+    let lattice = Lattice::read(grid);
+    let Some(window) = number(grid, "window") else {
         return grid.clone();
     };
-    let all = boxes(grid);
-    let of = |label: Option<usize>| -> Vec<Box4> {
-        let own = all.iter().filter(|(l, _)| Some(*l) == label);
-        own.map(|(_, b)| *b).collect()
-    };
-    let windows = without_specks(of(Some(window)));
-    if windows.is_empty() {
-        return grid.clone();
-    }
-    let floors = clusters(&windows, |b| b.y);
-    let columns = clusters(&windows, |b| b.x);
-    let rows: Vec<[f64; 2]> = floors
-        .iter()
-        .map(|f| middle(f, &windows, |b| b.y))
-        .collect();
-    let spans: Vec<[f64; 2]> = columns
-        .iter()
-        .map(|c| middle(c, &windows, |b| b.x))
-        .collect();
-    let exact = |groups: &[Vec<usize>], lines: &[[f64; 2]], side: fn(&Box4) -> [f64; 2]| {
-        groups
-            .iter()
-            .zip(lines)
-            .all(|(group, line)| group.iter().all(|&w| side(&windows[w]) == *line))
-    };
-    if exact(&floors, &rows, |b| b.y) && exact(&columns, &spans, |b| b.x) {
+    if lattice.exact {
         return grid.clone();
     }
     let (width, height) = (grid.xs[grid.columns()], grid.ys[grid.rows()]);
-    let mut painted: Vec<(usize, Box4)> = bands(
-        grid,
-        &[
-            Some(window),
-            number("balcony"),
-            number("door"),
-            number("void"),
-        ],
-    )
-    .into_iter()
-    .map(|(label, y)| (label, Box4 { x: [0.0, width], y }))
-    .collect();
-    for (floor, row) in floors.iter().zip(&rows) {
-        let has: Vec<bool> = columns
-            .iter()
-            .map(|c| c.iter().any(|w| floor.contains(w)))
-            .collect();
-        for (span, _) in spans.iter().zip(filled(has)).filter(|(_, has)| *has) {
-            painted.push((window, Box4 { x: *span, y: *row }));
-        }
-    }
-    if let Some(balcony) = number("balcony") {
-        let found = without_specks(of(Some(balcony)));
+    let elements = ["window", "balcony", "door", "void"].map(|label| number(grid, label));
+    let behind = bands(grid, &elements).into_iter();
+    let x = [0.0, width];
+    let mut painted: Vec<(usize, Box4)> = behind.map(|(label, y)| (label, Box4 { x, y })).collect();
+    for (&y, has) in lattice.rows.iter().zip(&lattice.windows) {
+        let spans = lattice.columns.iter().chain(&lattice.loose).zip(has);
         painted.extend(
-            balconies(&found, &rows, &spans, width)
-                .into_iter()
-                .map(|b| (balcony, b)),
+            spans
+                .filter(|(_, has)| **has)
+                .map(|(&x, _)| (window, Box4 { x, y })),
         );
     }
-    let doors = of(number("door"));
-    if let (Some(label), Some(door)) = (
-        number("door"),
-        doors
-            .into_iter()
-            .max_by(|a, b| a.area().total_cmp(&b.area())),
-    ) {
-        let ground = Box4 {
-            x: door.x,
-            y: [0.0, door.y[1].min(height)],
-        };
-        painted.push((label, ground));
+    if let Some(label) = number(grid, "balcony") {
+        let all = lattice.balconies.iter().flat_map(Balconies::boxes);
+        painted.extend(all.map(|b| (label, *b)));
+    }
+    if let (Some(label), Some(door)) = (number(grid, "door"), lattice.largest_door) {
+        let y = [0.0, door.y[1].min(height)];
+        painted.push((label, Box4 { x: door.x, y }));
     }
     paint(grid, &painted)
 }
 
-/// The bounding boxes of all connected areas, with their labels.
-fn boxes(grid: &LabelGrid) -> Vec<(usize, Box4)> {
-    let whole = Span {
-        left: 0,
-        right: grid.columns(),
-        bottom: 0,
-        top: grid.rows(),
-    };
-    let found = components(grid, whole, &mut vec![0; grid.cells.len()]);
-    let bounds = found.iter().map(|area| {
-        let b = area.bounds;
-        let x = [grid.xs[b.left], grid.xs[b.right]];
-        (
-            usize::from(area.label),
-            Box4 {
-                x,
-                y: [grid.ys[b.bottom], grid.ys[b.top]],
-            },
-        )
-    });
-    bounds.collect()
+/// The number of a label in a picture, whatever its case.
+fn number(grid: &LabelGrid, name: &str) -> Option<usize> {
+    let mut labels = grid.labels.iter();
+    labels.position(|label| label.eq_ignore_ascii_case(name))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
-fn without_specks(boxes: Vec<Box4>) -> Vec<Box4> {
-    let usual = median(boxes.iter().map(Box4::area).collect());
-    boxes
-        .into_iter()
-        .filter(|b| b.area() >= SPECK * usual)
-        .collect()
-}
-
-/// Indices of boxes in clusters of neighbouring centres along one axis, in order.
-fn clusters(boxes: &[Box4], side: impl Fn(&Box4) -> [f64; 2]) -> Vec<Vec<usize>> {
-    let centre = |k: usize| side(&boxes[k]).iter().sum::<f64>() / 2.0;
-    let usual = median(boxes.iter().map(|b| side(b)[1] - side(b)[0]).collect());
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&a, &b| centre(a).total_cmp(&centre(b)));
-    let mut out: Vec<Vec<usize>> = Vec::new();
-    for k in order {
-        match out.last_mut() {
-            Some(cluster)
-                if cluster
-                    .last()
-                    .is_some_and(|&last| centre(k) - centre(last) <= usual / 2.0) =>
-            {
-                cluster.push(k);
-            }
-            _ => out.push(vec![k]),
-        }
+fn place(door: &Box4, width: f64) -> DoorPlace {
+    if door.x[0] <= AT_END * width {
+        DoorPlace::Left
+    } else if door.x[1] >= (1.0 - AT_END) * width {
+        DoorPlace::Right
+    } else {
+        DoorPlace::Between
     }
-    out
-}
-
-/// Median lower and upper side of a cluster.
-fn middle(cluster: &[usize], boxes: &[Box4], side: impl Fn(&Box4) -> [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|end| median(cluster.iter().map(|&k| side(&boxes[k])[end]).collect()))
 }
 
 /// All true where most are.
@@ -197,97 +213,6 @@ fn filled(mut has: Vec<bool>) -> Vec<bool> {
         has.fill(true);
     }
     has
-}
-
-/// The balconies of all floors.
-fn balconies(found: &[Box4], rows: &[[f64; 2]], spans: &[[f64; 2]], width: f64) -> Vec<Box4> {
-    let mut of_floor: Vec<Vec<Box4>> = vec![Vec::new(); rows.len()];
-    for b in found {
-        // The floor whose windows begin nearest to where the balcony ends, within a window's height.
-        let distance = |row: &[f64; 2]| (row[0] - b.y[1]).abs().min((row[0] - b.y[0]).abs());
-        let nearest =
-            (0..rows.len()).min_by(|&i, &j| distance(&rows[i]).total_cmp(&distance(&rows[j])));
-        if let Some(floor) = nearest
-            && distance(&rows[floor]) <= rows[floor][1] - rows[floor][0]
-        {
-            of_floor[floor].push(*b);
-        }
-    }
-    let mut out = Vec::new();
-    for own in of_floor {
-        let (running, single): (Vec<Box4>, Vec<Box4>) = own
-            .into_iter()
-            .partition(|b| b.x[1] - b.x[0] >= RUNNING * width);
-        let y = |boxes: &[Box4]| [0, 1].map(|end| median(boxes.iter().map(|b| b.y[end]).collect()));
-        if !running.is_empty() {
-            out.push(Box4 {
-                x: [0.0, width],
-                y: y(&running),
-            });
-            continue;
-        }
-        if single.is_empty() {
-            continue;
-        }
-        let covers = |b: &Box4, span: &[f64; 2]| {
-            let shared = b.x[1].min(span[1]) - b.x[0].max(span[0]);
-            shared >= 0.5 * (span[1] - span[0])
-        };
-        // Those over several columns reach from the first to the last of them.
-        let mut has = vec![false; spans.len()];
-        for b in &single {
-            let under: Vec<usize> = (0..spans.len()).filter(|&c| covers(b, &spans[c])).collect();
-            match under[..] {
-                [first, .., last] => out.push(Box4 {
-                    x: [spans[first][0], spans[last][1]],
-                    y: y(&single),
-                }),
-                [only] => has[only] = true,
-                [] => {}
-            }
-        }
-        let all = filled(has);
-        let narrow = spans.iter().zip(all).filter(|(_, has)| *has);
-        out.extend(narrow.map(|(span, _)| Box4 {
-            x: *span,
-            y: y(&single),
-        }));
-    }
-    out
-}
-
-/// A grid of the boxes, later ones over earlier ones.
-fn paint(grid: &LabelGrid, painted: &[(usize, Box4)]) -> LabelGrid {
-    let cuts = |side: fn(&Box4) -> [f64; 2], end: f64| {
-        let mut cuts: Vec<f64> = painted
-            .iter()
-            .flat_map(|(_, b)| side(b))
-            .chain([0.0, end])
-            .collect();
-        cuts.retain(|cut| (0.0..=end).contains(cut));
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup();
-        cuts
-    };
-    let xs = cuts(|b| b.x, grid.xs[grid.columns()]);
-    let ys = cuts(|b| b.y, grid.ys[grid.rows()]);
-    let columns = xs.len() - 1;
-    let mut cells = vec![0; columns * (ys.len() - 1)];
-    for (label, b) in painted {
-        let place = |cuts: &[f64], value: f64| cuts.partition_point(|&cut| cut < value);
-        for j in place(&ys, b.y[0])..place(&ys, b.y[1]) {
-            for i in place(&xs, b.x[0])..place(&xs, b.x[1]) {
-                cells[j * columns + i] = *label as u16;
-            }
-        }
-    }
-    LabelGrid {
-        xs,
-        ys,
-        cells,
-        ..grid.clone()
-    }
-    .merged()
 }
 
 #[cfg(test)]
@@ -348,6 +273,106 @@ mod tests {
         });
         assert_ne!(moved, exact);
         assert_eq!(on_lattice(&moved), exact);
+    }
+
+    #[test]
+    fn attic_windows_between_columns_stay_between_them() {
+        let mut painted: Vec<Box4> = Vec::new();
+        for floor in 0..3 {
+            for column in 0..3 {
+                let (x, y) = (10.0 + 28.0 * column as f64, 30.0 * floor as f64 + 2.0);
+                // One side of one window wavers, so that the picture is not exact.
+                let y = [y, y + 20.0 + f64::from(u8::from(floor + column == 0))];
+                painted.push(Box4 {
+                    x: [x, x + 15.0],
+                    y,
+                });
+            }
+        }
+        let attic = [[24.0, 36.0], [52.0, 64.0]].map(|x| Box4 {
+            x,
+            y: [92.0, 104.0],
+        });
+        painted.extend(attic);
+        let blank = LabelGrid {
+            name: "f".into(),
+            unit: "px".into(),
+            xs: vec![0.0, 90.0],
+            ys: vec![0.0, 120.0],
+            labels: vec!["wall".into(), "window".into()],
+            cells: vec![0],
+        };
+        let wall = Box4 {
+            x: [0.0, 90.0],
+            y: [0.0, 120.0],
+        };
+        let boxes = [
+            vec![(0, wall)],
+            painted.into_iter().map(|b| (1, b)).collect(),
+        ]
+        .concat();
+        let picture = paint(&blank, &boxes);
+        let lattice = Lattice::read(&picture);
+        assert_eq!((lattice.rows.len(), lattice.columns.len()), (4, 3));
+        assert_eq!(lattice.changes(&lattice), 0);
+        let clean = on_lattice(&picture);
+        assert_ne!(clean, picture);
+        let above = super::boxes(&clean).into_iter();
+        let above: Vec<Box4> = above
+            .filter(|(l, b)| *l == 1 && b.y[0] > 90.0)
+            .map(|(_, b)| b)
+            .collect();
+        assert_eq!(above, attic);
+    }
+
+    #[test]
+    fn what_a_balcony_hides_of_a_window_is_still_a_floor() {
+        let boxes = |narrow: f64| -> Vec<(usize, Box4)> {
+            let mut out = vec![(
+                0,
+                Box4 {
+                    x: [0.0, 90.0],
+                    y: [0.0, 120.0],
+                },
+            )];
+            for (floor, column) in (0..4).flat_map(|f| (0..3).map(move |c| (f, c))) {
+                let (x, y) = (
+                    10.0 + 28.0 * f64::from(column),
+                    30.0 * f64::from(floor) + 2.0,
+                );
+                out.push((
+                    1,
+                    Box4 {
+                        x: [x, x + 15.0],
+                        y: [y, y + 20.0],
+                    },
+                ));
+            }
+            // Of the uppermost windows a strip is seen above the balcony, and one below it.
+            out.push((
+                2,
+                Box4 {
+                    x: [narrow, 90.0 - narrow],
+                    y: [94.0, 109.0],
+                },
+            ));
+            out
+        };
+        let blank = LabelGrid {
+            name: "f".into(),
+            unit: "px".into(),
+            xs: vec![0.0, 90.0],
+            ys: vec![0.0, 120.0],
+            labels: vec!["wall".into(), "window".into(), "balcony".into()],
+            cells: vec![0],
+        };
+        let [running, partial] = [1.0, 20.0].map(|end| Lattice::read(&paint(&blank, &boxes(end))));
+        assert_eq!((running.floors(), running.columns.len()), (4, 3));
+        assert_eq!(running.running, [3]);
+        assert_eq!(partial.floors(), 4);
+        assert_eq!(partial.running, [0; 0]);
+        assert_eq!(running.changes(&partial), 1);
+        assert_eq!(partial.changes(&running), 1);
     }
 
     #[test]

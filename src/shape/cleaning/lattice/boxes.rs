@@ -1,0 +1,127 @@
+//! Elements of a facade as boxes, and their clusters along an axis.
+
+use crate::{LabelGrid, Span, components};
+
+/// An element smaller than this share of the median area is a speck.
+const SPECK: f64 = 0.3;
+
+/// Elements this near to each other, as a share of the larger side of a facade, touch.
+const TOUCH: f64 = 0.01;
+
+/// A box: left and right, bottom and top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Box4 {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+}
+
+impl Box4 {
+    pub(super) fn area(&self) -> f64 {
+        (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
+    }
+}
+
+/// The bounding boxes of all connected areas, with their labels.
+pub(super) fn boxes(grid: &LabelGrid) -> Vec<(usize, Box4)> {
+    let whole = Span {
+        left: 0,
+        right: grid.columns(),
+        bottom: 0,
+        top: grid.rows(),
+    };
+    let found = components(grid, whole, &mut vec![0; grid.cells.len()]);
+    let bounds = found.iter().map(|area| {
+        let b = area.bounds;
+        let x = [grid.xs[b.left], grid.xs[b.right]];
+        (
+            usize::from(area.label),
+            Box4 {
+                x,
+                y: [grid.ys[b.bottom], grid.ys[b.top]],
+            },
+        )
+    });
+    bounds.collect()
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+pub(super) fn without_specks(boxes: Vec<Box4>) -> Vec<Box4> {
+    let usual = median(boxes.iter().map(Box4::area).collect());
+    boxes
+        .into_iter()
+        .filter(|b| b.area() >= SPECK * usual)
+        .collect()
+}
+
+/// A window as far as it is seen, and with the part of it that a balcony hides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    pub seen: Box4,
+    pub whole: Box4,
+}
+
+/// The windows without specks: a window that stands on a balcony reaches down behind it, and is one with its
+/// part below the balcony.
+pub(super) fn behind_balconies(seen: &[Box4], balconies: &[Box4], size: f64) -> Vec<Window> {
+    let touch = |a: f64, b: f64| (a - b).abs() <= TOUCH * size;
+    let before =
+        |b: &Box4, w: &Box4| b.x[1].min(w.x[1]) - b.x[0].max(w.x[0]) >= 0.5 * (w.x[1] - w.x[0]);
+    let mut joined = vec![false; seen.len()];
+    let mut windows: Vec<Window> = seen.iter().map(|&b| Window { seen: b, whole: b }).collect();
+    for k in 0..seen.len() {
+        let own = seen[k];
+        let under = |b: &&Box4| before(b, &own) && touch(b.y[1], own.y[0]);
+        let Some(balcony) = balconies.iter().find(under) else {
+            continue;
+        };
+        let window = &mut windows[k];
+        window.whole.y[0] = balcony.y[0].min(own.y[0]);
+        let below = |b: &Box4| before(&own, b) && touch(b.y[1], balcony.y[0]);
+        for part in (0..seen.len()).filter(|&part| part != k && below(&seen[part])) {
+            joined[part] = true;
+            for y in [&mut window.seen.y, &mut window.whole.y] {
+                y[0] = y[0].min(seen[part].y[0]);
+            }
+        }
+    }
+    let mut parts = joined.into_iter();
+    windows.retain(|_| parts.next() == Some(false));
+    let usual = median(windows.iter().map(|w| w.whole.area()).collect());
+    windows.retain(|w| w.whole.area() >= SPECK * usual);
+    windows
+}
+
+/// Indices of boxes in clusters of neighbouring centres along one axis, in order.
+pub(super) fn clusters(boxes: &[Box4], side: impl Fn(&Box4) -> [f64; 2]) -> Vec<Vec<usize>> {
+    let centre = |k: usize| side(&boxes[k]).iter().sum::<f64>() / 2.0;
+    let usual = median(boxes.iter().map(|b| side(b)[1] - side(b)[0]).collect());
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    order.sort_by(|&a, &b| centre(a).total_cmp(&centre(b)));
+    let mut out: Vec<Vec<usize>> = Vec::new();
+    for k in order {
+        match out.last_mut() {
+            Some(cluster)
+                if cluster
+                    .last()
+                    .is_some_and(|&last| centre(k) - centre(last) <= usual / 2.0) =>
+            {
+                cluster.push(k);
+            }
+            _ => out.push(vec![k]),
+        }
+    }
+    out
+}
+
+/// Median lower and upper side of a cluster.
+pub(super) fn middle(
+    cluster: &[usize],
+    boxes: &[Box4],
+    side: impl Fn(&Box4) -> [f64; 2],
+) -> [f64; 2] {
+    [0, 1].map(|end| median(cluster.iter().map(|&k| side(&boxes[k])[end]).collect()))
+}
