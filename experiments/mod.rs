@@ -47,8 +47,8 @@ use std::process::ExitCode;
 use sweep::Study;
 
 pub use frame::{
-    Args, Artefact, Budget, Context, Experiment, Options, Own, Pictured, Report, ReportDocument,
-    Shown, documents, run, run_to_end, shown, silence,
+    Args, Artefact, Budget, Context, Experiment, Journal, Options, Own, Pictured, Report,
+    ReportDocument, Shown, documents, run, run_to_end, shown, silence,
 };
 
 /// Every paper's experiment, in the order of the report.

@@ -32,7 +32,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             "inside",
             "fill",
         ]);
-    for (name, city) in data::cities(ctx)? {
+    let cities = data::cities(ctx)?;
+    let real = cities.iter().any(|(name, _)| name != data::MADE);
+    for (name, city) in cities {
         let made = proceduralize(&city, &data::settings(Mode::Best, 4, seed), &unwatched)
             .map_err(Error::method)?;
         let new = synthesize(&made.grammar, &shape, seed, &unwatched).map_err(Error::method)?;
@@ -65,10 +67,13 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         table.row(row);
         let picture =
             side_by_side(&[&derivation.city(&new)], width, width * 3 / 4).map_err(Error::method)?;
+        // The made city is shown only where there is no real one, whose grammar would hold its data.
+        if name == data::MADE && real {
+            continue;
+        }
         let what = format!("{name}: {} buildings in the shape 3DV", j.buildings);
         ctx.attach(&format!("figure_9_{name}.png"), &picture, &what)?;
         if name == data::MADE {
-            // That of a real city holds its data.
             let file = format!("figure_9_{name}.city-grammar.bin");
             let bytes = grammar_file::to_bytes(&new, file.as_ref())?;
             ctx.attach(&file, &bytes, "the same as a grammar of instances")?;

@@ -22,8 +22,8 @@ struct Entry {
     value: serde_json::Value,
 }
 
-/// The journal of one artefact.
-pub(crate) struct Journal {
+/// The finished units of one artefact, or of one command that can be resumed.
+pub struct Journal {
     path: PathBuf,
     done: HashMap<String, serde_json::Value>,
     file: Mutex<File>,
@@ -33,8 +33,8 @@ impl Journal {
     /// Opens or starts the journal at `path`, whose folder is made when missing.
     ///
     /// # Errors
-    /// [`Error::Content`] when another process has it open.
-    pub(crate) fn open(path: &Path) -> Result<Self> {
+    /// [`Error::Content`] when another process has it open, [`Error::Io`] otherwise.
+    pub fn open(path: &Path) -> Result<Self> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, "create", e))?;
         }
@@ -62,12 +62,15 @@ impl Journal {
     }
 
     /// The stored result of a unit; `None` when there is none of this shape.
-    pub(crate) fn get<R: serde::de::DeserializeOwned>(&self, key: &str) -> Option<R> {
+    pub fn get<R: serde::de::DeserializeOwned>(&self, key: &str) -> Option<R> {
         R::deserialize(self.done.get(key)?).ok()
     }
 
     /// Stores the result of a unit.
-    pub(crate) fn put<R: Serialize>(&self, key: &str, value: &R) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn put<R: Serialize>(&self, key: &str, value: &R) -> Result<()> {
         let entry = Entry {
             key: key.to_string(),
             value: serde_json::to_value(value).map_err(Error::method)?,

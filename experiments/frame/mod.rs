@@ -19,6 +19,7 @@ mod verify;
 pub use context::Context;
 pub use documents::{Pictured, ReportDocument, Shown, documents, shown};
 pub(super) use index::{SWEEPS, write_index};
+pub use journal::Journal;
 pub use options::{Args, Budget, Options};
 pub use own::Own;
 pub(crate) use progress::Progress;

@@ -111,7 +111,24 @@ fn learn_show_sample_complete_evaluate() {
         "--max-kinds",
         "2",
     ];
-    assert_eq!(text(&mut edifice(&evaluate)).lines().count(), 3);
+    let whole = text(&mut edifice(&evaluate));
+    assert_eq!(whole.lines().count(), 3);
+
+    // Losses of a former evaluation are taken, and only those of the same settings.
+    let kept = folder.path().join("losses.jsonl");
+    let kept_name = kept.to_string_lossy().into_owned();
+    let resume = [&evaluate[..], &["--resume", &kept_name]].concat();
+    assert_eq!(text(&mut edifice(&resume)), whole);
+    let first = std::fs::read_to_string(&kept).unwrap();
+    assert_eq!(first.lines().count(), 2);
+    let other = first.replacen("\"value\":-", "\"value\":1000", 1);
+    assert_ne!(first, other);
+    std::fs::write(&kept, &other).unwrap();
+    assert!(text(&mut edifice(&resume)).contains(",1,1000"));
+    assert_eq!(std::fs::read_to_string(&kept).unwrap(), other);
+    let seeded = [&resume[..], &["--seed", "2"]].concat();
+    assert!(!text(&mut edifice(&seeded)).contains(",1,1000"));
+    assert_eq!(std::fs::read_to_string(&kept).unwrap().lines().count(), 4);
 }
 
 #[test]

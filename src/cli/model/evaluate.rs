@@ -1,14 +1,17 @@
 //! `edifice model evaluate`, and what `building evaluate` shares with it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use edifice_base::{Error, Result};
+use edifice_experiments::Journal;
 use edifice_model::ModelError;
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split, summary};
+use sha2::{Digest, Sha256};
 
 use super::data::TableInput;
 use super::learning::{heed_interrupts, interrupted, seconds};
@@ -47,10 +50,50 @@ pub(crate) struct Splits {
     /// Seconds after which to end with the splits that are whole (as Ctrl-C does).
     #[arg(long, value_name = "SECONDS")]
     time_limit: Option<f64>,
+    /// File of the losses found (made when missing): those that it has are not computed again, so that an evaluation that was
+    /// ended goes on where it was. It may hold those of other data and settings too.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     #[command(flatten)]
     search: SearchOptions,
     #[command(flatten)]
     json: Json,
+}
+
+/// The loss of the model at a place on a split.
+type Told = (u64, usize, std::result::Result<f64, ModelError>);
+
+/// The losses that former evaluations left, if they were to leave some.
+struct Former {
+    journal: Option<Journal>,
+    /// What losses depend on besides model and split.
+    of: String,
+    contenders: Vec<Contender>,
+}
+
+impl Former {
+    fn key(&self, split: u64, which: usize) -> String {
+        format!(
+            "{} {:?} split {}",
+            self.of,
+            self.contenders[which],
+            split + 1
+        )
+    }
+
+    fn get(&self, split: u64, which: usize) -> Option<f64> {
+        self.journal.as_ref()?.get(&self.key(split, which))
+    }
+
+    /// Keeps a loss that was not known.
+    fn keep(&self, split: u64, which: usize, loss: f64) -> Result<()> {
+        match &self.journal {
+            Some(journal) if self.get(split, which).is_none() => {
+                journal.put(&self.key(split, which), &loss)
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Runs the command.
@@ -91,7 +134,12 @@ impl Splits {
         let mut losses = vec![Vec::new(); contenders.len()];
         heed_interrupts();
         let limit = self.time_limit.map(seconds);
-        let told = self.judged(data, &contenders, settings);
+        let former = Arc::new(Former {
+            journal: self.resume.as_deref().map(Journal::open).transpose()?,
+            of: self.digest(data, &settings),
+            contenders: contenders.iter().map(|(_, c)| *c).collect(),
+        });
+        let told = self.judged(data, &former, settings);
         loop {
             let (index, which, found) = match told.recv_timeout(ASKED) {
                 Ok(one) => one,
@@ -107,6 +155,7 @@ impl Splits {
                 let rows = split(data.table.rows(), self.share, self.search.seed, index);
                 Error::content(path, within(&e, &rows, index))
             })?;
+            former.keep(index, which, mean)?;
             if !json.is_asked() {
                 print::line(&format!("{},{},{mean:.4}", contenders[which].0, index + 1))?;
             }
@@ -140,24 +189,32 @@ impl Splits {
         json.end(&serde_json::json!({ "splits": whole, "models": models }))
     }
 
-    /// The mean loss of every model on every split, as (split, place of the model, loss), in order, from a thread of its own: one that is in the midst of a
+    /// What losses depend on besides model and split, as a digest.
+    fn digest(&self, data: &Dataset, settings: &Settings) -> String {
+        let of = format!("{data:?} {settings:?} {} {}", self.share, self.search.seed);
+        let digest = Sha256::digest(of.as_bytes());
+        digest[..16]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    }
+
+    /// The mean loss of every model on every split, in order, the known ones as they are, from a thread of its own: one that is in the midst of a
     /// model when nobody waits any more ends with the process.
-    fn judged(
-        &self,
-        data: &Dataset,
-        contenders: &[(String, Contender)],
-        settings: Settings,
-    ) -> Receiver<(u64, usize, std::result::Result<f64, ModelError>)> {
+    fn judged(&self, data: &Dataset, former: &Arc<Former>, settings: Settings) -> Receiver<Told> {
         let (tell, told) = channel();
-        let (data, splits, share, seed) = (data.clone(), self.splits, self.share, self.search.seed);
-        let contenders: Vec<Contender> = contenders.iter().map(|(_, c)| *c).collect();
+        let (data, former) = (data.clone(), Arc::clone(former));
+        let (splits, share, seed) = (self.splits, self.share, self.search.seed);
         std::thread::spawn(move || {
             for index in 0..splits {
                 let (train, test) = split(data.table.rows(), share, seed, index);
                 let (train, test) = (data.select(&train), data.select(&test));
-                for (which, contender) in contenders.iter().enumerate() {
-                    let found = held_out(*contender, &train, &test, &settings, seed);
-                    let mean = found.map(|all| all.iter().sum::<f64>() / all.len() as f64);
+                for (which, contender) in former.contenders.iter().enumerate() {
+                    let computed = || {
+                        let found = held_out(*contender, &train, &test, &settings, seed);
+                        found.map(|all| all.iter().sum::<f64>() / all.len() as f64)
+                    };
+                    let mean = former.get(index, which).map_or_else(computed, Ok);
                     if tell.send((index, which, mean)).is_err() {
                         return;
                     }
