@@ -15,9 +15,8 @@ const BAND: (f64, f64) = (0.06, 0.45);
 /// Thinnest strip of the picture through which a seam may go, as a share of the side.
 const THINNEST: f64 = 0.012;
 
-/// Number of rows (along y) or columns (along x) of elements of a facade: spans along the axis of the regions of its most
-/// frequent label but the one of most area, those that overlap counted once; at least 1.
-pub(super) fn levels(facade: &Facade, axis: Axis) -> u32 {
+/// Spans along an axis of the elements of a facade, by where they start: the regions of its most frequent label but the one of most area.
+fn spans(facade: &Facade, axis: Axis) -> Vec<(f64, f64)> {
     let mut labels: Vec<(&str, f64, usize)> = Vec::new();
     for region in &facade.regions {
         match labels.iter_mut().find(|known| known.0 == region.label) {
@@ -30,7 +29,7 @@ pub(super) fn levels(facade: &Facade, axis: Axis) -> u32 {
     }
     labels.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(b.0)));
     let Some(element) = labels.iter().skip(1).rev().max_by_key(|known| known.2) else {
-        return 1;
+        return Vec::new();
     };
     let own = facade
         .regions
@@ -39,15 +38,29 @@ pub(super) fn levels(facade: &Facade, axis: Axis) -> u32 {
     let mut spans: Vec<(f64, f64)> = own
         .map(|r| (r.rect.start(axis), r.rect.end(axis)))
         .collect();
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    spans
+}
+
+/// Number of rows (along y) or columns (along x) of elements of a facade, those that overlap counted once; at least 1.
+pub(super) fn levels(facade: &Facade, axis: Axis) -> u32 {
     let (mut count, mut reach) = (0, f64::NEG_INFINITY);
-    for (start, end) in spans {
+    for (start, end) in spans(facade, axis) {
         if start >= reach {
             count += 1;
         }
         reach = reach.max(end);
     }
     count.max(1)
+}
+
+/// Number of elements that are not in line: along the axis they overlap the one before, and have other ends.
+pub(super) fn out_of_line(facade: &Facade, axis: Axis) -> usize {
+    let mut spans = spans(facade, axis);
+    let near = 1e-6 * facade.width.max(facade.height);
+    spans.dedup_by(|a, b| (a.0 - b.0).abs() <= near && (a.1 - b.1).abs() <= near);
+    let next = spans.windows(2);
+    next.filter(|pair| pair[1].0 + near < pair[0].1).count()
 }
 
 /// The picture with one band more or less along an axis; none where no band fits.

@@ -5,10 +5,11 @@
 //! stands beside a strip that it stands beside already. The sequence is neither that of the first nor that of the second; the number
 //! of strips stays between theirs. The second facade is drawn among those of the library. Across the strips the second facade is stretched so that the cuts of strip `j` fall on those of strip `i`,
 //! piecewise linearly: what is in line with them in the second facade is so in the result. Along them it is scaled so
-//! that both strips have one size.
+//! that both strips have one size. Elements must not stand less in line than in the first facade.
 
 use rand::{Rng, RngExt};
 
+use super::bands::out_of_line;
 use super::error::LibraryError;
 use super::library::{Library, Member};
 use super::rules::{Rules, Symbol};
@@ -115,7 +116,12 @@ impl Library {
             let (i, j) = joints[rng.random_range(0..joints.len())];
             let upper = self.between(second, second, 0.0, &facade.name)?;
             let parts = [(facade, own[i].terminals), (&upper, other[j].terminals)];
-            if let Some(joined) = joined(parts, axis, self.step()) {
+            // Elements that stand in line in the first facade do so in the result.
+            let in_line = |joined: &Facade| {
+                let across = axis.other();
+                out_of_line(joined, across) <= out_of_line(facade, across)
+            };
+            if let Some(joined) = joined(parts, axis, self.step()).filter(in_line) {
                 return Ok(Some(joined));
             }
         }
