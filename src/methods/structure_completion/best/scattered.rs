@@ -9,8 +9,8 @@
 //! - A line of m windows on which none is seen would have to be hidden whole, with probability `(1 - q)^m`, q now without the
 //!   bias that each seen line has at least one seen window. Where that is below [`RARE`], its windows are so much less
 //!   probable, whether the chain, a mirror image or another facade proposes them.
-//! - A cell of a seen row and a seen column is judged by the other rows and columns alone: its probability is the value of the
-//!   completed matrix. (The mean of that and of what was learnt adds more windows, of which fewer are right.)
+//! - A cell of a seen row and a seen column is judged by the other rows and columns, too: its probability is the mean of what
+//!   was learnt and of the completed matrix.
 
 use super::candidates::Candidates;
 use super::observation::{Observation, of};
@@ -93,7 +93,7 @@ impl Scattered {
         match (on(rows, y, Axis::Y), on(columns, x, Axis::X)) {
             (Some(row), Some(column)) => {
                 let completed = self.cells.value(row, column).clamp(0.0, 1.0);
-                probability + self.single * (completed - probability)
+                probability + self.single * (completed - probability) / 2.0
             }
             (Some(_), None) => probability * self.hidden[0],
             (None, Some(_)) => probability * self.hidden[1],
