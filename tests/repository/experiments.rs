@@ -7,9 +7,11 @@ use assert_cmd::Command;
 
 use edifice_experiments::{ALL, Budget, Experiment, Options, run};
 
-fn options(out: &Path, threads: usize) -> Options {
+use crate::cases::cases;
+
+fn options(out: &Path, threads: usize, only: Vec<String>) -> Options {
     Options {
-        only: Vec::new(),
+        only,
         data: None,
         own: Vec::new(),
         seed: 1,
@@ -70,6 +72,35 @@ fn check(experiment: &'static Experiment, out: &Path) {
     assert!(!folder.join(".work").exists(), "journals of a finished run");
 }
 
+/// The artefacts that run with one thread, too: every fourth name, or all.
+fn with_one_thread() -> Vec<String> {
+    let mut names: Vec<&str> = Vec::new();
+    for artefact in ALL.iter().flat_map(|experiment| experiment.artefacts) {
+        if !names.contains(&artefact.name) {
+            names.push(artefact.name);
+        }
+    }
+    let every = names.len() / cases(names.len());
+    names
+        .into_iter()
+        .step_by(every.max(1))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// True if a file of the run of some artefacts is that of the run of all. The index and the pages of a run tell of all of them: of
+/// those the artefacts that both have must be told alike.
+fn agrees(name: &Path, some: &[u8], all: &[u8]) -> bool {
+    if name.file_name().is_none_or(|file| file != "run.json") {
+        return some == all || name == Path::new("index.html");
+    }
+    let [some, all] = [some, all].map(|bytes| {
+        let about: serde_json::Value = serde_json::from_slice(bytes).expect("run.json is JSON");
+        about["artefacts"].as_object().expect("artefacts").clone()
+    });
+    !some.is_empty() && some.iter().all(|(name, made)| all.get(name) == Some(made))
+}
+
 #[test]
 fn every_experiment_runs_anywhere_and_threads_do_not_matter() {
     let one = tempfile::tempdir().expect("a folder");
@@ -78,10 +109,11 @@ fn every_experiment_runs_anywhere_and_threads_do_not_matter() {
     let installed = tempfile::tempdir().expect("a folder");
     let program = installed.path().join("edifice");
     std::fs::copy(env!("CARGO_BIN_EXE_edifice"), &program).expect("copied");
-    // Both at once: each leaves a core idle.
+    // Both at once: each leaves a core idle. The threads are tried on every fourth artefact, on all where all cases are (`.ci/full`).
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            let report = run(ALL, &options(one.path(), 1)).expect("experiments run");
+            let some = options(one.path(), 1, with_one_thread());
+            let report = run(ALL, &some).expect("experiments run");
             assert!(report.failed.is_empty(), "{:?}", report.failed);
         });
         Command::new(&program)
@@ -100,13 +132,15 @@ fn every_experiment_runs_anywhere_and_threads_do_not_matter() {
     );
 
     for experiment in ALL {
-        check(experiment, one.path());
         check(experiment, two.path());
     }
     let [one, two] = [one.path(), two.path()].map(lasting);
-    assert!(one.len() > 200, "{}", one.len());
-    assert!(one.keys().eq(two.keys()), "the same files");
-    let other = one.iter().filter(|(name, bytes)| two[*name] != **bytes);
+    assert!(two.len() > 200, "{}", two.len());
+    assert!(one.len() >= cases(two.len()) / 2, "{}", one.len());
+    let other = one.iter().filter(|(name, bytes)| {
+        let all = two.get(*name);
+        all.is_none_or(|all| !agrees(name, bytes, all))
+    });
     let other: Vec<_> = other.map(|(name, _)| name).collect();
     assert!(
         other.is_empty(),
@@ -117,8 +151,7 @@ fn every_experiment_runs_anywhere_and_threads_do_not_matter() {
 #[test]
 fn an_unknown_artefact_is_named() {
     let out = tempfile::tempdir().expect("a folder");
-    let mut options = options(out.path(), 1);
-    options.only = vec!["table_99".into()];
+    let options = options(out.path(), 1, vec!["table_99".into()]);
     let message = run(ALL, &options).expect_err("no such table").to_string();
     assert!(
         message.contains("table_99") && message.contains("table_1"),

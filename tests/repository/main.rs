@@ -1,5 +1,7 @@
 //! The repository itself: shipped data, sizes, installed program, artefacts.
 
+#[path = "../common/cases.rs"]
+mod cases;
 mod datasets;
 mod experiments;
 mod formats;
