@@ -22,6 +22,8 @@ mod bands;
 mod boxes;
 mod paint;
 
+use std::collections::BTreeSet;
+
 use crate::LabelGrid;
 
 use balconies::{Balconies, balconies};
@@ -88,12 +90,15 @@ impl Lattice {
         let whole: Vec<Box4> = found.iter().map(|w| w.whole).collect();
         let seen: Vec<Box4> = found.iter().map(|w| w.seen).collect();
         let floors = clusters(&whole, |b| b.y);
-        let on = |column: &[usize], floor: &[usize]| column.iter().any(|w| floor.contains(w));
-        let (columns, loose): (Vec<_>, Vec<_>) =
-            clusters(&whole, |b| b.x).into_iter().partition(|column| {
-                let floors_of = floors.iter().filter(|floor| on(column, floor)).count();
-                floors_of as f64 >= OF_FLOORS * floors.len() as f64
-            });
+        let mut floor_of = vec![0; whole.len()];
+        for (number, floor) in floors.iter().enumerate() {
+            floor.iter().for_each(|&w| floor_of[w] = number);
+        }
+        let floors_of =
+            |column: &[usize]| -> BTreeSet<usize> { column.iter().map(|&w| floor_of[w]).collect() };
+        let (columns, loose): (Vec<_>, Vec<_>) = clusters(&whole, |b| b.x)
+            .into_iter()
+            .partition(|column| floors_of(column).len() as f64 >= OF_FLOORS * floors.len() as f64);
         let middles = |groups: &[Vec<usize>], boxes: &[Box4], side: fn(&Box4) -> [f64; 2]| {
             let middles = groups.iter().map(|group| middle(group, boxes, side));
             middles.collect::<Vec<_>>()
@@ -111,6 +116,8 @@ impl Lattice {
                 .is_some_and(|row| 2.0 * b.y[1] <= row[0] + row[1])
         };
         let windowless_ground = doors.iter().chain(&of("shop")).any(below_windows);
+        let on = [&columns, &loose]
+            .map(|groups| groups.iter().map(|g| floors_of(g)).collect::<Vec<_>>());
         let running = balconies.iter().enumerate();
         let running = running.filter(|(_, on)| matches!(on, Balconies::Running(_)));
         let largest_door = doors
@@ -121,11 +128,12 @@ impl Lattice {
             running: running
                 .map(|(row, _)| row + usize::from(windowless_ground))
                 .collect(),
-            windows: floors
-                .iter()
+            windows: (0..floors.len())
                 .map(|floor| {
-                    let has = |groups: &[Vec<usize>]| groups.iter().map(|c| on(c, floor)).collect();
-                    [filled(has(&columns)), has(&loose)].concat()
+                    let has = |groups: &[BTreeSet<usize>]| {
+                        groups.iter().map(|g| g.contains(&floor)).collect()
+                    };
+                    [filled(has(&on[0])), has(&on[1])].concat()
                 })
                 .collect(),
             exact: exact(&floors, |b| b.y) && exact(&columns, |b| b.x) && exact(&loose, |b| b.x),

@@ -64,24 +64,45 @@ pub(super) struct Window {
     pub whole: Box4,
 }
 
+/// Upper sides of boxes in order.
+struct Tops(Vec<(f64, usize)>);
+
+impl Tops {
+    fn new(boxes: &[Box4]) -> Self {
+        let mut tops: Vec<(f64, usize)> = boxes.iter().map(|b| b.y[1]).zip(0..).collect();
+        tops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self(tops)
+    }
+
+    /// The boxes that end within `reach` of a height, by their upper side.
+    fn near(&self, at: f64, reach: f64) -> impl Iterator<Item = usize> + '_ {
+        let from = self.0.partition_point(|top| top.0 < at - reach);
+        let near = self.0[from..]
+            .iter()
+            .take_while(move |top| top.0 <= at + reach);
+        near.map(|top| top.1)
+    }
+}
+
 /// The windows without specks: a window that stands on a balcony reaches down behind it, and is one with its
 /// part below the balcony.
 pub(super) fn behind_balconies(seen: &[Box4], balconies: &[Box4], size: f64) -> Vec<Window> {
-    let touch = |a: f64, b: f64| (a - b).abs() <= TOUCH * size;
     let before =
         |b: &Box4, w: &Box4| b.x[1].min(w.x[1]) - b.x[0].max(w.x[0]) >= 0.5 * (w.x[1] - w.x[0]);
+    let (tops, own_tops) = (Tops::new(balconies), Tops::new(seen));
     let mut joined = vec![false; seen.len()];
     let mut windows: Vec<Window> = seen.iter().map(|&b| Window { seen: b, whole: b }).collect();
     for k in 0..seen.len() {
         let own = seen[k];
-        let under = |b: &&Box4| before(b, &own) && touch(b.y[1], own.y[0]);
-        let Some(balcony) = balconies.iter().find(under) else {
+        let mut under = tops.near(own.y[0], TOUCH * size);
+        let Some(balcony) = under.find_map(|b| Some(&balconies[b]).filter(|b| before(b, &own)))
+        else {
             continue;
         };
         let window = &mut windows[k];
         window.whole.y[0] = balcony.y[0].min(own.y[0]);
-        let below = |b: &Box4| before(&own, b) && touch(b.y[1], balcony.y[0]);
-        for part in (0..seen.len()).filter(|&part| part != k && below(&seen[part])) {
+        let below = own_tops.near(balcony.y[0], TOUCH * size);
+        for part in below.filter(|&part| part != k && before(&own, &seen[part])) {
             joined[part] = true;
             for y in [&mut window.seen.y, &mut window.whole.y] {
                 y[0] = y[0].min(seen[part].y[0]);
