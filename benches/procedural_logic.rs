@@ -10,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use edifice::methods::procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, Parameters, Profile, learn_affinity, parse,
 };
-use edifice::shape::LabelGrid;
+use edifice::shape::{LabelGrid, Lattice};
 use edifice_experiments::layouts;
 use edifice_experiments::procedural_logic::data::{label_images, shipped_source};
 
@@ -68,7 +68,7 @@ fn procedural_logic(criterion: &mut Criterion) {
             let start = Inference::default().add(&tree).start;
             group.throughput(Throughput::Elements(1));
             group.bench_function(BenchmarkId::new(format!("profile/{name}"), 1), |bencher| {
-                bencher.iter(|| Profile::new(&tree, &rules, start));
+                bencher.iter(|| Profile::new(&tree, &rules, start, Lattice::read(&grids[0])));
             });
         }
         group.finish();

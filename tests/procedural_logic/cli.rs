@@ -217,6 +217,19 @@ fn ties_and_known_names_are_said() {
     let line = output(at, &["logic", "compare", ".", "--query", "copy_1"]);
     let words = "copy_1: copy_2 0.000 = copy_3 0.000, other ";
     assert!(line.starts_with(words), "{line}");
+    // Rows and columns differ by whole changes.
+    let lattice = [
+        "logic",
+        "compare",
+        ".",
+        "--query",
+        "copy_1",
+        "--measure",
+        "lattice",
+    ];
+    let line = output(at, &lattice);
+    let changes = line.trim().strip_prefix(words).map(str::parse);
+    assert!(matches!(changes, Some(Ok(1.0_f64..))), "{line}");
     let line = output(
         at,
         &["logic", "compare", ".", "--query", "copy_1", "--top", "1"],

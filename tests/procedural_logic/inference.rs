@@ -6,7 +6,7 @@ use edifice::methods::procedural_logic::{
     Parameters, Profile, learn_affinity, parse, split_grammar,
 };
 use edifice::rng::stream;
-use edifice::shape::{Axis, Facade, LabelGrid};
+use edifice::shape::{Axis, Facade, LabelGrid, Lattice};
 use proptest::prelude::*;
 use rand::RngExt;
 
@@ -285,7 +285,7 @@ fn profiles_survive_the_way_through_the_parameters() {
     for (index, grid) in grids.iter().enumerate() {
         let tree = model.parse(grid).expect("an image");
         let start = model.facades[index].instance.start;
-        let direct = Profile::new(&tree, &model.inference.rules, start);
+        let direct = Profile::new(&tree, &model.inference.rules, start, Lattice::read(grid));
         assert_eq!(direct, profiles[index], "{index}");
     }
 }
