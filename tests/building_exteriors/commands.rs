@@ -121,7 +121,7 @@ fn learn_show_sample_complete_evaluate() {
     assert_eq!(text(&mut edifice(&resume)), whole);
     let first = std::fs::read_to_string(&kept).unwrap();
     assert_eq!(first.lines().count(), 2);
-    let other = first.replacen("\"value\":-", "\"value\":1000", 1);
+    let other = first.replacen("\"value\":", "\"value\":1000", 1);
     assert_ne!(first, other);
     std::fs::write(&kept, &other).unwrap();
     assert!(text(&mut edifice(&resume)).contains(",1,1000"));
