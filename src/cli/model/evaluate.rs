@@ -66,7 +66,7 @@ type Told = (u64, usize, std::result::Result<f64, ModelError>);
 /// The losses that former evaluations left, if they were to leave some.
 struct Former {
     journal: Option<Journal>,
-    /// What losses depend on besides model and split.
+    /// Digest of all that losses depend on besides model and split.
     of: String,
     contenders: Vec<Contender>,
 }
@@ -189,7 +189,7 @@ impl Splits {
         json.end(&serde_json::json!({ "splits": whole, "models": models }))
     }
 
-    /// What losses depend on besides model and split, as a digest.
+    /// Digest of the table, the settings, the share and the seed.
     fn digest(&self, data: &Dataset, settings: &Settings) -> String {
         let of = format!("{data:?} {settings:?} {} {}", self.share, self.search.seed);
         let digest = Sha256::digest(of.as_bytes());
