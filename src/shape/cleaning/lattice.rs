@@ -28,11 +28,8 @@ use crate::LabelGrid;
 
 use balconies::{Balconies, balconies};
 use bands::bands;
-use boxes::{Box4, behind_balconies, boxes, clusters, middle, without_specks};
+use boxes::{Box4, behind_balconies, boxes, clusters, filled, middle, without_specks};
 use paint::paint;
-
-/// The share of columns from which on all have what these have.
-const MOST: f64 = 0.7;
 
 /// A column has windows on this share of the floors.
 const OF_FLOORS: f64 = 0.4;
@@ -212,15 +209,6 @@ fn place(door: &Box4, width: f64) -> DoorPlace {
     } else {
         DoorPlace::Between
     }
-}
-
-/// All true where most are.
-fn filled(mut has: Vec<bool>) -> Vec<bool> {
-    let count = has.iter().filter(|has| **has).count();
-    if count as f64 >= MOST * has.len() as f64 {
-        has.fill(true);
-    }
-    has
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Balconies of the floors of a facade.
 
-use super::boxes::{Box4, median};
-use super::filled;
+use super::boxes::{Box4, filled, median};
 
 /// A balcony this wide, as a share of the facade, runs from side to side.
 const RUNNING: f64 = 0.8;

@@ -5,6 +5,9 @@ use crate::{LabelGrid, Span, components};
 /// An element smaller than this share of the median area is a speck.
 const SPECK: f64 = 0.3;
 
+/// The share of columns from which on all have what these have.
+const MOST: f64 = 0.7;
+
 /// Elements this near to each other, as a share of the larger side of a facade, touch.
 const TOUCH: f64 = 0.01;
 
@@ -145,4 +148,13 @@ pub(super) fn middle(
     side: impl Fn(&Box4) -> [f64; 2],
 ) -> [f64; 2] {
     [0, 1].map(|end| median(cluster.iter().map(|&k| side(&boxes[k])[end]).collect()))
+}
+
+/// All true where most are.
+pub(super) fn filled(mut has: Vec<bool>) -> Vec<bool> {
+    let count = has.iter().filter(|has| **has).count();
+    if count as f64 >= MOST * has.len() as f64 {
+        has.fill(true);
+    }
+    has
 }
