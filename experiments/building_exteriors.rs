@@ -1,7 +1,6 @@
 //! Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings*: how houses
 //! look, on a database with a known truth and on two sets of real houses.
 
-mod averages;
 mod data;
 mod design_figures;
 mod facade_figures;

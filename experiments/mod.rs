@@ -27,6 +27,7 @@
 //! Results of a unit (`Answer`) are `Serialize + DeserializeOwned`: they go to the journal, and a run that was killed
 //! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
 
+mod averages;
 mod frame;
 mod generic;
 pub mod layouts;

@@ -1,10 +1,10 @@
 //! Fig. 12: held-out negative log-likelihood.
 
-use super::averages::mean_and_error;
 use super::real_sets::{DELFT, rows_of};
 use super::reasons::{self, Means};
 use super::{data, settings};
 use crate::Context;
+use crate::averages::mean_and_error;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_model::hierarchy::Settings;

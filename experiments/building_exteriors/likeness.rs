@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::averages::mean_and_error;
 use super::real_sets::{DELFT, rows_of};
 use crate::Context;
+use crate::averages::mean_and_error;
 use crate::roc::area_under_curve;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result, unwatched};

@@ -5,9 +5,9 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::averages::mean_and_error;
 use super::data::measure;
 use super::generation::{Unit, answer, rows_of};
+use crate::averages::mean_and_error;
 use crate::sweep::{Better, Given, Outcome, Shared, Study};
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::Database;

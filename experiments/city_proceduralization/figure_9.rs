@@ -65,12 +65,12 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         row.extend([w, d, h, near, j.divergence, j.floor, j.shuffled].map(three));
         row.extend([j.overlap, j.inside, j.fill].map(three));
         table.row(row);
-        let picture =
-            side_by_side(&[&derivation.city(&new)], width, width * 3 / 4).map_err(Error::method)?;
         // The made city is shown only where there is no real one, whose grammar would hold its data.
         if name == data::MADE && real {
             continue;
         }
+        let picture =
+            side_by_side(&[&derivation.city(&new)], width, width * 3 / 4).map_err(Error::method)?;
         let what = format!("{name}: {} buildings in the shape 3DV", j.buildings);
         ctx.attach(&format!("figure_9_{name}.png"), &picture, &what)?;
         if name == data::MADE {

@@ -13,6 +13,7 @@ use super::data::{files, stem};
 use super::held_out::HeldOut;
 use super::runs::mean;
 use super::told_apart::{Fold, area};
+use crate::averages::mean_and_error;
 use crate::{Budget, Context};
 
 /// Folds of the held-out bits.
@@ -232,8 +233,6 @@ fn measure(facades: &[Facade], seed: u64) -> Result<Measured> {
         .collect();
     let areas = rounds.iter().map(|folds| area(folds, &labels));
     let areas = areas.collect::<Result<Vec<f64>>>()?;
-    let square: f64 = areas.iter().map(|a| (a - mean(&areas)).powi(2)).sum();
-    let error = (square / (areas.len() * (areas.len() - 1)) as f64).sqrt();
     let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     Ok(Measured {
         facades: facades.len(),
@@ -251,7 +250,7 @@ fn measure(facades: &[Facade], seed: u64) -> Result<Measured> {
         known_roots: share(held_out.known, held_out.library.len()),
         new_draws: share(new, DRAWS as usize),
         aligned: (share(real, facades.len()), share(aligned, DRAWS as usize)),
-        told_apart: (mean(&areas), error),
+        told_apart: mean_and_error(&areas),
     })
 }
 

@@ -136,7 +136,10 @@ impl Splits {
         let limit = self.time_limit.map(seconds);
         let former = Arc::new(Former {
             journal: self.resume.as_deref().map(Journal::open).transpose()?,
-            of: self.digest(data, &settings),
+            of: match self.resume {
+                Some(_) => self.digest(data, &settings),
+                None => String::new(),
+            },
             contenders: contenders.iter().map(|(_, c)| *c).collect(),
         });
         let told = self.judged(data, &former, settings);
@@ -189,9 +192,10 @@ impl Splits {
         json.end(&serde_json::json!({ "splits": whole, "models": models }))
     }
 
-    /// Digest of the table, the settings, the share and the seed.
+    /// Digest of the version, the table, the settings, the share and the seed.
     fn digest(&self, data: &Dataset, settings: &Settings) -> String {
-        let of = format!("{data:?} {settings:?} {} {}", self.share, self.search.seed);
+        let (version, share, seed) = (env!("CARGO_PKG_VERSION"), self.share, self.search.seed);
+        let of = format!("{version} {data:?} {settings:?} {share} {seed}");
         let digest = Sha256::digest(of.as_bytes());
         digest[..16]
             .iter()

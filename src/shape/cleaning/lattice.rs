@@ -367,6 +367,12 @@ mod tests {
         assert_eq!(running.running, [3]);
         assert_eq!(partial.floors(), 4);
         assert_eq!(partial.running, [0; 0]);
+        // A balcony right above the windows of a floor hides none of them.
+        let mut above = boxes(1.0);
+        above.last_mut().unwrap().1.y = [82.0, 92.0];
+        let above = Lattice::read(&paint(&blank, &above));
+        assert_eq!((above.floors(), above.columns.len()), (4, 3));
+        assert_eq!(above.running, [3]);
         assert_eq!(running.changes(&partial), 1);
         assert_eq!(partial.changes(&running), 1);
     }

@@ -87,33 +87,20 @@ impl Tops {
     }
 }
 
-/// The windows without specks: a window that stands on a balcony reaches down behind it, and is one with its
-/// part below the balcony.
+/// The windows without specks: one that stands on a balcony reaches down behind it. What is seen of it below is a speck; a whole
+/// window that begins right below the balcony is one of its own.
 pub(super) fn behind_balconies(seen: &[Box4], balconies: &[Box4], size: f64) -> Vec<Window> {
     let before =
         |b: &Box4, w: &Box4| b.x[1].min(w.x[1]) - b.x[0].max(w.x[0]) >= 0.5 * (w.x[1] - w.x[0]);
-    let (tops, own_tops) = (Tops::new(balconies), Tops::new(seen));
-    let mut joined = vec![false; seen.len()];
-    let mut windows: Vec<Window> = seen.iter().map(|&b| Window { seen: b, whole: b }).collect();
-    for k in 0..seen.len() {
-        let own = seen[k];
-        let mut under = tops.near(own.y[0], TOUCH * size);
-        let Some(balcony) = under.find_map(|b| Some(&balconies[b]).filter(|b| before(b, &own)))
-        else {
-            continue;
-        };
-        let window = &mut windows[k];
-        window.whole.y[0] = balcony.y[0].min(own.y[0]);
-        let below = own_tops.near(balcony.y[0], TOUCH * size);
-        for part in below.filter(|&part| part != k && before(&own, &seen[part])) {
-            joined[part] = true;
-            for y in [&mut window.seen.y, &mut window.whole.y] {
-                y[0] = y[0].min(seen[part].y[0]);
-            }
-        }
-    }
-    let mut parts = joined.into_iter();
-    windows.retain(|_| parts.next() == Some(false));
+    let tops = Tops::new(balconies);
+    let windows = seen.iter().map(|&own| {
+        let under = tops.near(own.y[0], TOUCH * size).map(|b| &balconies[b]);
+        let hidden = under.filter(|b| before(b, &own)).map(|b| b.y[0]);
+        let mut whole = own;
+        whole.y[0] = hidden.fold(own.y[0], f64::min);
+        Window { seen: own, whole }
+    });
+    let mut windows: Vec<Window> = windows.collect();
     let usual = median(windows.iter().map(|w| w.whole.area()).collect());
     windows.retain(|w| w.whole.area() >= SPECK * usual);
     windows

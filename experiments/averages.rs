@@ -1,4 +1,4 @@
-//! Averages over splits.
+//! Averages over splits and rounds.
 
 /// Mean and standard error of the mean; no error for a single value.
 pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
