@@ -25,6 +25,10 @@
 //! Where no such bands bring the scale within [`SCALE`], seams may also cross wide regions of one label and one place across,
 //! a shop window, that become longer or shorter by that; their labels are told ([`Banded::cut`]).
 //!
+//! Where even these leave more than [`STRETCHED`] or lose more alignment, columns that have all regions of a label may be repeated
+//! along x, the door's aside, and then the whole facade from margin to margin: a narrow house at twice its width becomes two. Only
+//! then is alignment given up.
+//!
 //! # Deviations and readings
 //! - The paper (Wu et al. 2014, Sec. 5) derives each floor for itself and mends alignment afterwards. Here nothing is to
 //!   be mended: the quadratic program of [`align`](super::align) is for grammars that say themselves what gives way.
@@ -33,7 +37,7 @@
 use super::apply::{Band, apply};
 use super::bands_error::{BandsError, MOST_TIMES};
 use super::in_line::{Shares, loss, loss_of_panes, shares};
-use super::view::{AxisView, Repeat};
+use super::view::{AxisView, Columns, Repeat};
 use edifice_shape::{Axis, Facade, Rect, Region};
 
 /// `|ln k|` that needs no seams through elements.
@@ -45,6 +49,9 @@ const ALIGNMENT: f64 = 1.0;
 /// Greatest part of the alignment that may be lost, unless `|ln k|` is more than this then.
 const MOST_LOST: f64 = 0.1;
 const STRETCHED: f64 = 0.25;
+
+/// The same before all alignment is given up, where one house more, or none, leaves that much.
+const MOST_STRETCHED: f64 = 1.0 / 3.0;
 
 /// Weights of an earlier use of a band, and of its distance from the middle as a share of the side.
 const USED: f64 = 0.08;
@@ -131,17 +138,19 @@ struct BandCounts {
 }
 
 impl AxisView<'_> {
-    /// Counts of bands that keep all elements in line, else the panes, else none, where the stricter leaves too much to stretching.
+    /// Counts of bands that keep all elements in line, else the panes, else of rarer columns, else that keep none, where the stricter
+    /// leaves too much to stretching.
     fn planned(&self, target: f64) -> BandCounts {
         let left = |plan: &BandCounts| (target / plan.side).ln().abs();
         let more = target > self.side;
-        let (strict, loose) = (self.bands(false, more), self.bands(true, more));
+        let of = |which| self.bands(which, more);
+        let (common, cut) = (of(Columns::Common), of(Columns::Cut));
         let within = |kept: fn(&Shares, &Shares) -> f64| {
-            let plan = self.plan(&strict, target, kept);
+            let plan = self.plan(&common, target, kept);
             if left(&plan) <= SCALE {
                 return plan;
             }
-            let other = self.plan(&loose, target, kept);
+            let other = self.plan(&cut, target, kept);
             if left(&other) < left(&plan) {
                 other
             } else {
@@ -150,8 +159,21 @@ impl AxisView<'_> {
         };
         let bounds: [fn(&Shares, &Shares) -> f64; 2] = [loss, loss_of_panes];
         let kept = bounds.into_iter().map(within);
-        let found = kept.into_iter().find(|plan| left(plan) <= STRETCHED);
-        found.unwrap_or_else(|| within(|_, _| 0.0))
+        // No ground floor twice.
+        let rarer: &[(Columns, f64)] = match self.axis {
+            Axis::X => &[
+                (Columns::Single, STRETCHED),
+                (Columns::House, MOST_STRETCHED),
+            ],
+            Axis::Y => &[],
+        };
+        let rarer = rarer.iter().flat_map(|&(which, most)| {
+            let bands = of(which);
+            bounds.map(|kept| (self.plan(&bands, target, kept), most))
+        });
+        let mut plans = kept.map(|plan| (plan, STRETCHED)).chain(rarer);
+        let found = plans.find(|(plan, most)| left(plan) <= *most);
+        found.map_or_else(|| within(|_, _| 0.0), |(plan, _)| plan)
     }
 
     /// Chooses the counts of bands so that at each step `kept` lose at most [`MOST_LOST`] of their alignment.

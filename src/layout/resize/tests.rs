@@ -213,3 +213,52 @@ fn numbered_kinds_of_walls_are_walls() {
         assert!(found.bands[1] > 0);
     }
 }
+
+/// A shop with a door beside it; windows above that are in line on the left alone.
+fn shop_house() -> Facade {
+    let mut regions = Vec::new();
+    let mut row = |y: f64, h: f64, elements: &[(&str, f64, f64)]| {
+        let mut at = 0.0;
+        let mut put = |label: &str, x: f64, width: f64| {
+            regions.push(Region {
+                label: label.into(),
+                rect: Rect::new(x, y, width, h),
+            });
+        };
+        for &(label, x, width) in elements {
+            put("wall", at, x - at);
+            put(label, x, width);
+            at = x + width;
+        }
+        put("wall", at, 40.0 - at);
+    };
+    row(0.0, 25.0, &[("door", 3.0, 12.0), ("shop", 18.0, 19.0)]);
+    row(25.0, 10.0, &[]);
+    for (y, elements) in [(35.0, 1), (55.0, 1), (75.0, 2), (95.0, 1)] {
+        row(
+            y,
+            12.0,
+            &[("window", 6.0, 8.0), ("window", 22.0, 8.0)][..elements],
+        );
+        row(y + 12.0, 8.0, &[]);
+    }
+    row(115.0, 5.0, &[("vent", 17.0, 4.0)]);
+    row(120.0, 5.0, &[]);
+    Facade::new("shop", "dm", 40.0, 125.0, regions).unwrap()
+}
+
+#[test]
+fn a_narrow_house_at_twice_its_width_is_two() {
+    let own = shop_house();
+    own.check_tiling().unwrap();
+    let found = resized(&own, 2.0 * own.width, own.height).unwrap();
+    found.facade.check_tiling().unwrap();
+    let count = |f: &Facade, label: &str| f.regions.iter().filter(|r| r.label == label).count();
+    for label in ["door", "shop", "window", "vent"] {
+        assert_eq!(
+            count(&found.facade, label),
+            2 * count(&own, label),
+            "{label}"
+        );
+    }
+}

@@ -11,6 +11,9 @@ use edifice_shape::{Axis, Facade};
 /// Shortest and longest band, as shares of the side.
 const BAND: (f64, f64) = (0.04, 0.6);
 
+/// Shortest and longest band of [`Columns::House`], as shares of the side.
+const HOUSE: (f64, f64) = (0.8, 1.0);
+
 /// Least length of a region through which a seam may go if it must, as a share of the side.
 const WIDE: f64 = 0.07;
 
@@ -36,6 +39,19 @@ pub(super) struct Repeat {
     pub(super) new: f64,
 }
 
+/// Which columns (or floors) may be bands, from the strictest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Columns {
+    /// Those with seams between elements that do not have all regions of a label.
+    Common,
+    /// Also with seams through wide regions.
+    Cut,
+    /// Along x: also those that have all regions of a label, doors and what else stands lowest aside.
+    Single,
+    /// Along x: the whole facade from margin to margin, one house more.
+    House,
+}
+
 /// A facade seen along one axis.
 pub(super) struct AxisView<'a> {
     pub(super) pieces: Vec<Piece<'a>>,
@@ -45,8 +61,9 @@ pub(super) struct AxisView<'a> {
     contacts: Contacts<'a>,
     /// The least pitch of floors by label; empty along x, where windows of one floor may well stand closer than those of another.
     pitch: BTreeMap<&'a str, f64>,
-    /// Labels of which no band has all: along x every one; along y those that stand lowest somewhere, doors and shops.
-    fixed: BTreeSet<&'a str>,
+    pub(super) axis: Axis,
+    /// Labels that stand lowest somewhere, doors and shops.
+    lowest: BTreeSet<&'a str>,
     /// The lengths of the rows, across.
     rows: Vec<f64>,
     length_across: f64,
@@ -84,24 +101,31 @@ impl<'a> AxisView<'a> {
         let side = cuts[cuts.len() - 1];
         let noise = NOISE * facade.width.max(facade.height);
         let length_across = rows.iter().sum::<f64>();
-        let lowest = |row: usize| {
-            let upwards = cells.iter().map(|column| &pieces[column[row]]);
-            upwards.into_iter().find(|p| is_element(p, length_across))
-        };
-        let fixed = match axis {
-            Axis::X => pieces.iter().map(|piece| piece.label).collect(),
+        // From the ground up, at each place across the axis that is not y.
+        let upwards: Vec<Vec<usize>> = match axis {
+            Axis::X => cells.clone(),
             Axis::Y => (0..rows.len())
-                .filter_map(lowest)
-                .map(|piece| piece.label)
+                .map(|row| cells.iter().map(|column| column[row]).collect())
                 .collect(),
         };
+        // Plinths and cornices stand on nothing that would tell a column from others.
+        let is_narrow = |p: &Piece| match axis {
+            Axis::X => p.along.1 - p.along.0 < MOST_ACROSS * side,
+            Axis::Y => p.across.1 - p.across.0 < MOST_ACROSS * length_across,
+        };
+        let first = |indices: &Vec<usize>| {
+            let mut pieces = indices.iter().map(|&index| &pieces[index]);
+            pieces.find(|p| !is_wall(p.label) && is_narrow(p))
+        };
+        let lowest = upwards.iter().filter_map(first).map(|p| p.label).collect();
         let pitch = match axis {
             Axis::X => BTreeMap::new(),
             Axis::Y => pitches(&pieces, noise),
         };
         Ok(Self {
             pitch,
-            fixed,
+            axis,
+            lowest,
             contacts: Contacts::new(&pieces, &cells, side),
             pieces,
             cuts,
@@ -118,27 +142,32 @@ impl<'a> AxisView<'a> {
     }
 
     /// From each line the shortest band, and the shortest that brings nothing new together, ordered by the first seam.
-    pub(super) fn bands(&self, loose: bool, more: bool) -> Vec<Repeat> {
+    pub(super) fn bands(&self, which: Columns, more: bool) -> Vec<Repeat> {
         let columns = self.cells.len();
+        // A house comes beside itself as it comes nowhere else.
+        let ((shortest, longest), most_new) = match which {
+            Columns::House => (HOUSE, 1.0),
+            _ => (BAND, MOST_NEW),
+        };
         let mut found: Vec<Repeat> = Vec::new();
         for from in 0..columns {
             let mut any = false;
             for to in from + 1..columns {
-                if self.cuts[to] - self.cuts[from + 1] > BAND.1 * self.side {
+                if self.cuts[to] - self.cuts[from + 1] > longest * self.side {
                     break;
                 }
                 let fits = |&band: &Band| {
                     let share = (band.1 - band.0) / self.side;
-                    (BAND.0..=BAND.1).contains(&share)
-                        && self.alike((from, to), band, loose)
-                        && self.repeatable(band)
-                        && self.of_its_own(band) <= MOST_OWN
+                    (shortest..=longest).contains(&share)
+                        && self.alike((from, to), band, which >= Columns::Cut)
+                        && self.repeatable(band, which)
+                        && (which >= Columns::Single || self.of_its_own(band) <= MOST_OWN)
                 };
                 let Some(band) = self.seams(from, to).into_iter().find(fits) else {
                     continue;
                 };
                 let new = self.new_contacts((from, to), band, more);
-                if new <= MOST_NEW && (!any || new == 0.0) {
+                if new <= most_new && (!any || new == 0.0) {
                     found.push(Repeat { band, new });
                 }
                 any = true;
@@ -226,8 +255,17 @@ impl<'a> AxisView<'a> {
         if all > 0.0 { own / all } else { 0.0 }
     }
 
-    /// True if a band has elements, not all of a label that is [`fixed`](Self::fixed), and is not shorter than floors are.
-    fn repeatable(&self, band: Band) -> bool {
+    /// True if no band of such columns has all regions of the label.
+    fn is_fixed(&self, label: &str, which: Columns) -> bool {
+        match (self.axis, which) {
+            (Axis::X, Columns::Common | Columns::Cut) => true,
+            (_, Columns::House) => false,
+            (Axis::Y, _) | (_, Columns::Single) => self.lowest.contains(label),
+        }
+    }
+
+    /// True if a band has elements, not all of a label that [is fixed](Self::is_fixed), and is not shorter than floors are.
+    fn repeatable(&self, band: Band, which: Columns) -> bool {
         let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
         let mut any = false;
         for piece in self.pieces.iter().filter(|piece| !is_wall(piece.label)) {
@@ -245,7 +283,7 @@ impl<'a> AxisView<'a> {
             }
         }
         let all = |(label, count): (&&str, &(usize, usize))| {
-            count.1 == count.0 && self.fixed.contains(label)
+            count.1 == count.0 && self.is_fixed(label, which)
         };
         any && !counts.iter().any(all)
     }
