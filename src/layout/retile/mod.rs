@@ -107,6 +107,19 @@ pub fn retile<E: std::error::Error + 'static>(
     Ok(best)
 }
 
+/// The tilings on the path that always takes the merge that makes the least area wrong, up to the share `tolerance` of the area,
+/// with the share that is wrong: what [`retile`] is measured against.
+///
+/// # Errors
+/// [`GridError`] for a grid that is not valid.
+pub fn least_wrong_path(grid: &LabelGrid, tolerance: f64) -> Result<Vec<(Facade, f64)>, GridError> {
+    grid.check()?;
+    let area = grid.xs[grid.columns()] * grid.ys[grid.rows()];
+    let states = merges(grid, tolerance * area, Order::Area).into_iter();
+    let tiling = |state: path::State| Ok((decompose(&state.grid)?.facade, state.wrong / area));
+    states.map(tiling).collect()
+}
+
 /// A picture on a path with about what it costs.
 struct Estimated {
     facade: Facade,
@@ -179,6 +192,20 @@ mod tests {
         }
     }
 
+    /// The share of the area whose label is another one, counted pixel by pixel.
+    fn counted(grid: &LabelGrid, facade: &Facade) -> f64 {
+        let mut differ = 0;
+        for region in &facade.regions {
+            let label = u16::from(region.label == "window");
+            for y in region.rect.y as usize..region.rect.top() as usize {
+                for x in region.rect.x as usize..region.rect.right() as usize {
+                    differ += usize::from(grid.cells[y * 60 + x] != label);
+                }
+            }
+        }
+        f64::from(u32::try_from(differ).unwrap()) / 3600.0
+    }
+
     fn price(facade: &Facade) -> Result<f64, Infallible> {
         Ok(parse_cost(facade, 1.0, &Costs::default()).unwrap())
     }
@@ -209,22 +236,17 @@ mod tests {
         fn prices_fall_and_what_is_wrong_is_counted(offsets in prop::collection::vec(0u8..16, 9)) {
             let grid = noisy(&offsets);
             let mut least = f64::INFINITY;
+            let path = least_wrong_path(&grid, 0.04).unwrap();
+            for (facade, wrong) in &path {
+                prop_assert!(*wrong <= 0.04 + 1e-12);
+                prop_assert!((counted(&grid, facade) - wrong).abs() < 1e-9);
+            }
             for tolerance in [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04] {
                 let made = retile(&grid, None, tolerance, price).unwrap();
                 prop_assert!(made.price <= least);
                 prop_assert!(made.wrong <= tolerance + 1e-12);
                 least = made.price;
-                // The wrong area, counted pixel by pixel.
-                let mut differ = 0;
-                for region in &made.facade.regions {
-                    let label = u16::from(region.label == "window");
-                    for y in region.rect.y as usize..region.rect.top() as usize {
-                        for x in region.rect.x as usize..region.rect.right() as usize {
-                            differ += usize::from(grid.cells[y * 60 + x] != label);
-                        }
-                    }
-                }
-                prop_assert!((differ as f64 / 3600.0 - made.wrong).abs() < 1e-9);
+                prop_assert!((counted(&grid, &made.facade) - made.wrong).abs() < 1e-9);
             }
         }
     }
