@@ -26,8 +26,8 @@
 //! a shop window, that become longer or shorter by that; their labels are told ([`Banded::cut`]).
 //!
 //! Where even these leave more than [`STRETCHED`] or lose more alignment, columns that have all regions of a label may be repeated
-//! along x, the door's aside, and then the whole facade from margin to margin: a narrow house at twice its width becomes two. Only
-//! then is alignment given up.
+//! along x, the door's aside, each a few times, or the whole facade from margin to margin, whichever leaves less: a narrow house at
+//! twice its width becomes two. Only then is alignment given up.
 //!
 //! # Deviations and readings
 //! - The paper (Wu et al. 2014, Sec. 5) derives each floor for itself and mends alignment afterwards. Here nothing is to
@@ -52,6 +52,9 @@ const STRETCHED: f64 = 0.25;
 
 /// The same before all alignment is given up, where one house more, or none, leaves that much.
 const MOST_STRETCHED: f64 = 1.0 / 3.0;
+
+/// So many times a column that has all regions of a label is repeated at most, with those that overlap it.
+const MOST_SINGLE: i64 = 3;
 
 /// Weights of an earlier use of a band, and of its distance from the middle as a share of the side.
 const USED: f64 = 0.08;
@@ -138,19 +141,19 @@ struct BandCounts {
 }
 
 impl AxisView<'_> {
-    /// Counts of bands that keep all elements in line, else the panes, else of rarer columns, else that keep none, where the stricter
-    /// leaves too much to stretching.
+    /// Counts of bands that keep all elements in line, else the panes, where the stricter leaves too much to stretching; else of
+    /// columns of their own or of whole houses, whichever leaves less; else of bands that keep nothing in line.
     fn planned(&self, target: f64) -> BandCounts {
         let left = |plan: &BandCounts| (target / plan.side).ln().abs();
         let more = target > self.side;
         let of = |which| self.bands(which, more);
         let (common, cut) = (of(Columns::Common), of(Columns::Cut));
         let within = |kept: fn(&Shares, &Shares) -> f64| {
-            let plan = self.plan(&common, target, kept);
+            let plan = self.plan(&common, target, kept, i64::MAX);
             if left(&plan) <= SCALE {
                 return plan;
             }
-            let other = self.plan(&cut, target, kept);
+            let other = self.plan(&cut, target, kept, i64::MAX);
             if left(&other) < left(&plan) {
                 other
             } else {
@@ -158,26 +161,38 @@ impl AxisView<'_> {
             }
         };
         let bounds: [fn(&Shares, &Shares) -> f64; 2] = [loss, loss_of_panes];
-        let kept = bounds.into_iter().map(within);
-        // No ground floor twice.
-        let rarer: &[(Columns, f64)] = match self.axis {
+        let mut kept = bounds.into_iter().map(within);
+        if let Some(plan) = kept.find(|plan| left(plan) <= STRETCHED) {
+            return plan;
+        }
+        let rarer: &[(Columns, i64, f64)] = match self.axis {
             Axis::X => &[
-                (Columns::Single, STRETCHED),
-                (Columns::House, MOST_STRETCHED),
+                (Columns::Single, MOST_SINGLE, STRETCHED),
+                (Columns::House, i64::MAX, MOST_STRETCHED),
             ],
+            // No ground floor twice.
             Axis::Y => &[],
         };
-        let rarer = rarer.iter().flat_map(|&(which, most)| {
+        let rarer = rarer.iter().filter_map(|&(which, times, most)| {
             let bands = of(which);
-            bounds.map(|kept| (self.plan(&bands, target, kept), most))
+            let mut plans = bounds
+                .into_iter()
+                .map(|kept| self.plan(&bands, target, kept, times));
+            plans.find(|plan| left(plan) <= most)
         });
-        let mut plans = kept.map(|plan| (plan, STRETCHED)).chain(rarer);
-        let found = plans.find(|(plan, most)| left(plan) <= *most);
-        found.map_or_else(|| within(|_, _| 0.0), |(plan, _)| plan)
+        let least = rarer.min_by(|p, q| left(p).total_cmp(&left(q)));
+        least.unwrap_or_else(|| within(|_, _| 0.0))
     }
 
-    /// Chooses the counts of bands so that at each step `kept` lose at most [`MOST_LOST`] of their alignment.
-    fn plan(&self, bands: &[Repeat], target: f64, kept: fn(&Shares, &Shares) -> f64) -> BandCounts {
+    /// Chooses the counts of bands so that at each step `kept` lose at most [`MOST_LOST`] of their alignment. Bands that overlap are
+    /// together added at most `times`.
+    fn plan(
+        &self,
+        bands: &[Repeat],
+        target: f64,
+        kept: fn(&Shares, &Shares) -> f64,
+        times: i64,
+    ) -> BandCounts {
         let more = target > self.side;
         let before = shares(&self.pieces, self.noise);
         let mut plan = BandCounts {
@@ -194,8 +209,13 @@ impl AxisView<'_> {
                 } else {
                     plan.side - (b - a)
                 };
-                let overlaps = |&((from, to), count): &(Band, i64)| count < 0 && from < b && a < to;
-                if side <= 0.0 || (!more && plan.counts.iter().any(overlaps)) {
+                let overlapping = (plan.counts.iter())
+                    .filter(|((from, to), _)| *from < b && a < *to)
+                    .map(|&(_, count)| count.abs())
+                    .sum::<i64>();
+                // Removed bands do not overlap.
+                let most = if more { times } else { 1 };
+                if side <= 0.0 || overlapping >= most {
                     continue;
                 }
                 let new_scale = (target / side).ln().abs();
