@@ -6,7 +6,7 @@ use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{Settings, infer};
 use edifice_io::{LabelMap, ReadOptions, read_label_grid};
 use edifice_layout::retile::{least_wrong_path, retile};
-use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
+use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table, category};
 use edifice_shape::Facade;
 use serde::{Deserialize, Serialize};
 
@@ -65,7 +65,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         Scale::new("per cent of the area"),
         Scale::new("mean cost"),
     );
-    for (name, ..) in SETS {
+    for (k, (name, ..)) in SETS.into_iter().enumerate() {
         let mine = units.iter().zip(&curves).filter(|(unit, _)| unit.0 == name);
         let mine: Vec<&Vec<Point>> = mine.map(|(_, curve)| curve).collect();
         if mine.is_empty() {
@@ -87,11 +87,9 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
                 .map(|(k, &t)| (t, at(k, of)))
                 .collect::<Vec<_>>()
         };
-        chart = chart.series(Series::marked(name, points(|p| p.cost)));
-        chart = chart.series(Series::dashed(
-            format!("{name}, bound"),
-            points(|p| p.bound),
-        ));
+        let (cost, bound) = (points(|p| p.cost), points(|p| p.bound));
+        chart = chart.series(Series::marked(name, cost).colour(category(k)));
+        chart = chart.series(Series::dashed("", bound).colour(category(k)));
     }
     let rising = curves.iter().filter(|curve| {
         curve
@@ -128,7 +126,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     }
     ctx.note(
         "Each label picture is retiled by merges (`layout::retile`, `grammar infer --tolerance`), and the cheapest picture within the tolerance is kept. \
-         The bound is proven for the picture that was chosen, not over all pictures within the tolerance. *Merge path*: the strip between two lines \
+         The bound, dashed, is proven for the picture that was chosen, not over all pictures within the tolerance. *Merge path*: the strip between two lines \
          that makes the least area wrong goes to a neighbour, again and again; every picture on the way is priced, and the cheapest within the tolerance \
          counts (`layout::retile::least_wrong_path`). All pictures of a set, \
          but at the default budget 6 of CMP, evenly spread over it.",
