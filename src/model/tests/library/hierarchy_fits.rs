@@ -182,3 +182,19 @@ fn the_fit_to_rows_that_were_not_searched_ends_at_small_gains() {
     assert!(last > round, "{asked}: all rows were not fitted");
     assert!(last < ROUNDS / 2 * round, "{asked}: the fit went on and on");
 }
+
+#[test]
+fn a_search_may_try_two_states_and_no_fewer() {
+    let houses = overlapping(60);
+    let searched = |most_states: usize| {
+        let settings = Settings {
+            most_states,
+            styles: 1..=1,
+            ..Settings::default()
+        };
+        learn(&houses, &size(), &settings, 1)
+    };
+    let found = searched(2).unwrap();
+    assert!(found.trace.iter().all(|step| step.score.is_finite()));
+    assert!(searched(1).is_err());
+}

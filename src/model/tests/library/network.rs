@@ -288,6 +288,27 @@ fn learns_what_made_the_data_with_holes_in_it() {
 }
 
 #[test]
+fn a_fit_climbs_the_posterior_and_not_the_likelihood() {
+    // Nine of ten; from even odds one round is the mode under Dirichlet(a, a).
+    let data = edifice_model::Table::new().binary("garage", (0..10).map(|i| Some(i < 9)));
+    let data = data.unwrap();
+    let even = Variable::table("garage", &["no", "yes"], &[], &[0.5, 0.5]);
+    let even = Network::new(vec![even]).unwrap();
+    for dirichlet in [1.5, 4.0] {
+        let mut settings = FitSettings::default();
+        settings.priors.dirichlet = dirichlet;
+        let fitted = even.fit_from(&data, &settings).unwrap();
+        let yes = (9.0 + dirichlet - 1.0) / (10.0 + 2.0 * (dirichlet - 1.0));
+        let posterior = |yes: f64| {
+            (9.0 + dirichlet - 1.0) * yes.ln() + (1.0 + dirichlet - 1.0) * (1.0 - yes).ln()
+        };
+        let gain = fitted.trace[1] - fitted.trace[0];
+        let want = posterior(yes) - posterior(0.5);
+        assert!((gain - want).abs() < 1e-9, "{dirichlet}: {gain} for {want}");
+    }
+}
+
+#[test]
 fn bad_networks_are_named() {
     let cyclic = Network::new(vec![
         Variable::discrete("a", &["n", "y"], &["b"]),
