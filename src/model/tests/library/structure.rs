@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use edifice_base::rng::stream;
-use edifice_model::network::structure::{Score, SearchSettings, score, search};
+use edifice_model::network::structure::{Score, SearchSettings, score, search, search_incomplete};
 use edifice_model::network::{Evidence, Network};
 use edifice_model::{Cell, ModelError, Table};
 use proptest::prelude::*;
@@ -196,6 +196,35 @@ fn the_skeleton_of_asia_comes_back() {
     )
     .unwrap();
     assert!(found.score >= truth_score - 1e-6);
+}
+
+/// Rows with holes: the score is the likelihood of what is seen less half a logarithm of the rows for each free number, and moves and
+/// families of all rounds are counted.
+#[test]
+fn the_score_of_rows_with_holes_is_that_of_their_network() {
+    let whole = random(&[2, 3, 2], 300, 4);
+    let mut seen = Table::new();
+    for (j, name) in ["a", "b", "c"].into_iter().enumerate() {
+        let sizes = [2, 3, 2];
+        let codes = (0..300).map(|i| ((i + j) % 5 > 0).then(|| code(&whole, j, i)));
+        seen = seen
+            .codes(name, &["0", "1", "2"][..sizes[j]], codes)
+            .unwrap();
+    }
+    let settings = SearchSettings::default();
+    let found = search_incomplete(&seen, &settings, 1, &|| true).unwrap();
+    let network = &found.network;
+    let likelihood: f64 = network.log_likelihood(&seen).unwrap().iter().sum();
+    let size = |name: &str| network.categories(name).unwrap().len();
+    let free = network.names().into_iter().map(|name| {
+        let parents = network.parents(name).unwrap();
+        (size(name) - 1) * parents.into_iter().map(size).product::<usize>()
+    });
+    let penalty = 0.5 * free.sum::<usize>() as f64 * 300f64.ln();
+    assert!((found.score - (likelihood - penalty)).abs() < 1e-6);
+    // Several rounds, each of which looks at every family at least.
+    let one = search(&whole, &settings, 1).unwrap();
+    assert!(found.moves > one.moves && found.families > one.families);
 }
 
 #[test]
