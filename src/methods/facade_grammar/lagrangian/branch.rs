@@ -283,8 +283,9 @@ fn last_least(bounds: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator) 
 
 #[cfg(test)]
 mod tests {
+    use super::super::region_type::RegionType;
     use super::super::tests::programs_of_small_facades;
-    use super::{Ascent, last_least, undecided_type};
+    use super::{Ascent, Item, alternatives, last_least, undecided_item, undecided_type};
     use proptest::prelude::*;
 
     /// A type used in half of the steps is in doubt, one used in all or in none is not; the one of most doubt is decided first.
@@ -315,6 +316,36 @@ mod tests {
         // Where all types are almost certain, one of the last derivation.
         assert_eq!(decided(&[(a, 0.02), (b, 0.99)], c), Some(c));
         assert_eq!(decided(&[], b), Some(b));
+    }
+
+    /// The first item of the derivation with an alternative; none of an empty one.
+    #[test]
+    fn the_first_item_with_an_alternative_is_decided() {
+        for program in &programs_of_small_facades() {
+            let types = program.region_types.iter().enumerate();
+            let of_type = |(t, known): (usize, &RegionType)| {
+                (0..known.costs.len()).map(move |item| (t as u32, item))
+            };
+            let items: Vec<Item> = types.flat_map(of_type).collect();
+            let decided = |items: &[Item]| {
+                let items = items.to_vec();
+                let (bound, usage) = (0.0, Default::default());
+                undecided_item(
+                    program,
+                    &Ascent {
+                        bound,
+                        usage,
+                        items,
+                    },
+                )
+            };
+            for from in 0..items.len() {
+                let has_other = |item: &&Item| alternatives(program, **item).next().is_some();
+                let first = items[from..].iter().find(has_other).copied();
+                assert_eq!(decided(&items[from..]), first);
+            }
+            assert_eq!(decided(&[]), None);
+        }
     }
 
     proptest! {
