@@ -326,3 +326,49 @@ fn reduced_type(region_type: &RegionType, live: &[bool], first: usize) -> (Regio
     new.costs = kept.iter().map(|&item| region_type.costs[item]).collect();
     (new, kept)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::derivation::Paths;
+    use super::super::tests::programs_of_small_facades;
+    use super::{Around, Dual, prices};
+
+    /// The cheapest rule of an occurrence is the cheapest through one of its items, and goes through an arc that leaves the start and
+    /// one that reaches the end.
+    #[test]
+    fn the_cheapest_rule_is_the_cheapest_through_an_item() {
+        // An operator whose arcs lead nowhere has no rule.
+        let is_close = |a: f64, b: f64| a == b || (a - b).abs() < 1e-9;
+        let mut compared = 0;
+        for program in &programs_of_small_facades() {
+            let mut dual = Dual::new(program);
+            dual.bound();
+            let (mut around, mut paths) = (Around::default(), Paths::default());
+            for &occurrence in &program.order {
+                let region_type = program.region_type(occurrence);
+                let prices = prices(program, occurrence, &dual.item_costs, &dual.values);
+                let (cheapest, _) = paths.cheapest(program, occurrence, &prices);
+                let mut least = f64::INFINITY;
+                for (k, operator) in region_type.operators.iter().enumerate() {
+                    around.measure(program, occurrence, k, &prices);
+                    let through = |is_of: &dyn Fn(usize) -> bool| {
+                        let arcs = operator.arcs.clone().filter(|&item| is_of(item));
+                        let costs = arcs.map(|item| around.through(region_type, k, item));
+                        costs.fold(f64::INFINITY, f64::min)
+                    };
+                    let all = through(&|_| true);
+                    let first = through(&|item| region_type.arcs[item].from == 0);
+                    let last = through(&|item| region_type.arcs[item].to == operator.last);
+                    assert!(
+                        is_close(first, all) && is_close(last, all),
+                        "{first} {all} {last}"
+                    );
+                    least = least.min(all);
+                }
+                assert!(is_close(least, cheapest), "{least} {cheapest}");
+                compared += 1;
+            }
+        }
+        assert!(compared > 20, "{compared}");
+    }
+}
