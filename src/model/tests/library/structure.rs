@@ -216,7 +216,7 @@ fn the_score_of_rows_with_holes_is_that_of_their_network() {
     let network = &found.network;
     let likelihood: f64 = network.log_likelihood(&seen).unwrap().iter().sum();
     let size = |name: &str| network.categories(name).unwrap().len();
-    let free = network.names().into_iter().map(|name| {
+    let free = network.names().map(|name| {
         let parents = network.parents(name).unwrap();
         (size(name) - 1) * parents.into_iter().map(size).product::<usize>()
     });
