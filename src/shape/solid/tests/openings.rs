@@ -116,3 +116,34 @@ fn openings_take_what_they_say_from_each_wall() {
         assert_eq!(beyond.count(), 4);
     }
 }
+
+/// Below a roof that rises along the wall, a rectangle is inside where its upper left corner is, told by hand.
+#[test]
+fn rectangles_below_a_rising_roof_are_inside_where_their_corners_are() {
+    // A wall from (0, 0) to (4, 0), two metres high on the left and six on the right.
+    let roof = Plane {
+        a: 1000,
+        b: 0,
+        c: 1000 * units(2.0),
+    };
+    let shed = prism([0, 0, 4, 3].map(|v| v * units(1.0)), Plane::level(0), roof);
+    let built = faces(&[shed]);
+    let wall = Wall {
+        axis: 1,
+        at: 0.0,
+        positive: false,
+    };
+    let (mut inside, mut outside) = (0, 0);
+    for i in 0..40 {
+        for j in 0..60 {
+            let (x, z) = (f64::from(i) * 0.1 + 0.03, f64::from(j) * 0.1 + 0.03);
+            let (right, top) = (x + 0.2, z + 0.2);
+            let is_inside = right < 3.99 && top < 1.99 + x;
+            let found = built.around(&wall, &[[x, right], [z, top]]);
+            assert_eq!(found.is_some(), is_inside, "{x} {z}");
+            inside += usize::from(is_inside);
+            outside += usize::from(!is_inside);
+        }
+    }
+    assert!(inside > 500 && outside > 500, "{inside} {outside}");
+}
