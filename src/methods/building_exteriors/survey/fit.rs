@@ -150,3 +150,34 @@ fn clipped_area(t: &Corners, r: &Rect) -> f64 {
     };
     ((0..ring.len()).map(twice).sum::<f64>() / 2.0).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use edifice_base::rng::stream;
+    use rand::RngExt;
+
+    use super::{Rect, clipped_area, plan_area};
+
+    /// The parts of a triangle in the cells of a grid around it make up the triangle, and none is larger than its cell.
+    #[test]
+    fn a_triangle_is_the_sum_of_its_parts() {
+        let mut rng = stream(1, "triangles", 0);
+        for _ in 0..500 {
+            // Corners on whole numbers meet the lines of the grid.
+            let mut number = || {
+                f64::from(rng.random_range(0..9_u8)) + f64::from(rng.random_range(0..3_u8)) / 4.0
+            };
+            let t = [(); 3].map(|()| [number(), number(), 0.0]);
+            let mut sum = 0.0;
+            for i in 0..10 {
+                for j in 0..10 {
+                    let cell = Rect::new(f64::from(i), f64::from(j), 1.0, 1.0);
+                    let part = clipped_area(&t, &cell);
+                    assert!(part <= 1.0 + 1e-9, "{t:?} {cell:?}");
+                    sum += part;
+                }
+            }
+            assert!((sum - plan_area(&t).abs()).abs() < 1e-9, "{t:?}");
+        }
+    }
+}
