@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use edifice_base::rng::stream;
-use edifice_model::Table;
 use edifice_model::em::{Outcome, Stopping};
 use edifice_model::hierarchy::{
     Group, Priors, SearchStep, Settings, Variant, fit, learn, learn_observed,
 };
+use edifice_model::{Cell, Table};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -20,6 +20,13 @@ fn overlapping(rows: usize) -> Table {
         Some([5.0, 7.5][i % 2] + z)
     });
     Table::new().real("width", widths).unwrap()
+}
+
+fn width(houses: &Table, row: usize) -> f64 {
+    match houses.column("width").unwrap().cell(row) {
+        Cell::Real(width) => width,
+        other => panic!("{other:?}"),
+    }
 }
 
 fn size() -> [Group; 1] {
@@ -184,7 +191,7 @@ fn the_fit_to_rows_that_were_not_searched_ends_at_small_gains() {
 }
 
 #[test]
-fn a_search_may_try_two_states_and_no_fewer() {
+fn a_search_may_try_two_states_and_no_fewer_and_tells_its_bic() {
     let houses = overlapping(60);
     let searched = |most_states: usize| {
         let settings = Settings {
@@ -195,6 +202,13 @@ fn a_search_may_try_two_states_and_no_fewer() {
         learn(&houses, &size(), &settings, 1)
     };
     let found = searched(2).unwrap();
-    assert!(found.trace.iter().all(|step| step.score.is_finite()));
+    // BIC is of standardised widths: each row is likelier by their deviation.
+    let own: Vec<f64> = (0..60).map(|i| width(&houses, i)).collect();
+    let mean = own.iter().sum::<f64>() / 60.0;
+    let variance = own.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / 60.0;
+    let likelihood: f64 = found.model.log_likelihood(&houses).unwrap().iter().sum();
+    let penalty = 0.5 * found.model.free_parameters() as f64 * 60f64.ln();
+    let bic = likelihood + 30.0 * variance.ln() - penalty;
+    assert!((found.bic - bic).abs() < 1e-6, "{} for {bic}", found.bic);
     assert!(searched(1).is_err());
 }
