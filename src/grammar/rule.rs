@@ -172,3 +172,55 @@ pub struct Grammar {
     /// The rules. The order carries no meaning; writers keep it.
     pub rules: Vec<Rule>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One relative size among absolute ones is found in every operation and at every place.
+    #[test]
+    fn relative_sizes_are_found() {
+        let of = |sizes: [Size; 2]| {
+            let axis = Axis::X;
+            let [a, b] = sizes.map(|size| Successor {
+                size,
+                ..Successor::new("wall", 1.0)
+            });
+            let successors = vec![a.clone(), b.clone()];
+            [
+                Operation::Repeat {
+                    axis,
+                    successors: successors.clone(),
+                },
+                Operation::SymSplit {
+                    axis,
+                    successors: successors.clone(),
+                    center: true,
+                },
+                Operation::Split { axis, successors },
+                Operation::RepeatAba { axis, a, b },
+                Operation::GridSplit {
+                    columns: vec![sizes[0]],
+                    rows: vec![sizes[1]],
+                    cells: vec![vec!["wall".into()]],
+                },
+            ]
+        };
+        let (one, some) = (Size::Absolute(1.0), Size::Relative(1.0));
+        for (sizes, is_relative) in [
+            ([one, one], false),
+            ([one, some], true),
+            ([some, one], true),
+            ([some, some], true),
+        ] {
+            for operation in of(sizes) {
+                let name = operation.name();
+                assert_eq!(
+                    operation.has_relative_sizes(),
+                    is_relative,
+                    "{name} {sizes:?}"
+                );
+            }
+        }
+    }
+}
