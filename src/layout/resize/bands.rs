@@ -25,9 +25,9 @@
 //! Where no such bands bring the scale within [`SCALE`], seams may also cross wide regions of one label and one place across,
 //! a shop window, that become longer or shorter by that; their labels are told ([`Banded::cut`]).
 //!
-//! Where even these leave more than [`STRETCHED`] or lose more alignment, columns that have all regions of a label may be repeated
-//! along x, the door's aside, each a few times, or the whole facade from margin to margin, whichever leaves less: a narrow house at
-//! twice its width becomes two. Only then is alignment given up.
+//! Where a facade is to become wider and even these leave more than [`STRETCHED`] or lose more alignment, columns that have all regions
+//! of a label may be repeated, the door's aside, each a few times, or the whole facade from margin to margin, whichever leaves less: a
+//! narrow house at twice its width becomes two. Only then is alignment given up.
 //!
 //! # Deviations and readings
 //! - The paper (Wu et al. 2014, Sec. 5) derives each floor for itself and mends alignment afterwards. Here nothing is to
@@ -50,7 +50,7 @@ const ALIGNMENT: f64 = 1.0;
 const MOST_LOST: f64 = 0.1;
 const STRETCHED: f64 = 0.25;
 
-/// The same before all alignment is given up, where one house more, or none, leaves that much.
+/// The same for whole houses, which come in whole numbers: two at 1.4 times the width of one are three quarters as wide.
 const MOST_STRETCHED: f64 = 1.0 / 3.0;
 
 /// So many times a column that has all regions of a label is repeated at most, with those that overlap it.
@@ -165,13 +165,13 @@ impl AxisView<'_> {
         if let Some(plan) = kept.find(|plan| left(plan) <= STRETCHED) {
             return plan;
         }
-        let rarer: &[(Columns, i64, f64)] = match self.axis {
-            Axis::X => &[
+        // No ground floor twice; what stands once is not taken away.
+        let rarer: &[(Columns, i64, f64)] = match (self.axis, more) {
+            (Axis::X, true) => &[
                 (Columns::Single, MOST_SINGLE, STRETCHED),
                 (Columns::House, i64::MAX, MOST_STRETCHED),
             ],
-            // No ground floor twice.
-            Axis::Y => &[],
+            _ => &[],
         };
         let rarer = rarer.iter().filter_map(|&(which, times, most)| {
             let bands = of(which);
@@ -238,7 +238,9 @@ impl AxisView<'_> {
                     &apply(&self.pieces, &counts, self.side, self.noise).0,
                     self.noise,
                 );
-                if kept(&before, &after) > MOST_LOST {
+                // Bands taken away together may have all regions of a label, though none has them alone.
+                let is_gone = |label: &&str| !after.contains_key(label);
+                if kept(&before, &after) > MOST_LOST || before.keys().any(is_gone) {
                     continue;
                 }
                 let lost = ALIGNMENT * loss(&before, &after);

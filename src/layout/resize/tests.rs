@@ -1,5 +1,7 @@
 //! Facades of equal windows at other sizes.
 
+use std::collections::BTreeSet;
+
 use super::{BandsError, MOST_TIMES, resized};
 use edifice_shape::{Facade, Rect, Region};
 
@@ -261,4 +263,21 @@ fn a_narrow_house_at_twice_its_width_is_two() {
             "{label}"
         );
     }
+}
+
+/// Whole houses and single columns are added, never taken away: whatever the width, the door and its wall stay.
+#[test]
+fn a_house_is_never_taken_away() {
+    for own in [shop_house(), windows(1, 1), windows(2, 2)] {
+        let before = labels(&own);
+        for times in [0.05, 0.1, 0.16, 0.2, 0.3, 0.5, 0.7, 0.9] {
+            let found = resized(&own, times * own.width, own.height).unwrap();
+            found.facade.check_tiling().unwrap();
+            assert_eq!(labels(&found.facade), before, "{times}");
+        }
+    }
+}
+
+fn labels(facade: &Facade) -> BTreeSet<&str> {
+    facade.regions.iter().map(|r| r.label.as_str()).collect()
 }
