@@ -261,6 +261,55 @@ fn merging_coplanar_triangles_keeps_the_solid() {
     }
 }
 
+/// Random cells of a grid, many of which touch at a corner only and have holes that touch: merged, they cover the same places once, also
+/// where triangles are there twice.
+#[test]
+fn merging_covers_random_cells_once() {
+    const SIDE: usize = 6;
+    let covers = |mesh: &TriangleMesh, x: f64, y: f64| -> usize {
+        let left = |a: [f64; 3], b: [f64; 3]| {
+            (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) > 0.0
+        };
+        let inside = |t: &[[f64; 3]; 3]| (0..3).all(|k| left(t[k], t[(k + 1) % 3]));
+        mesh.corners().filter(inside).count()
+    };
+    let (mut before, mut after) = (0, 0);
+    for seed in 0..3000 {
+        let mut rng = stream(seed, "cells", 0);
+        let share = rng.random_range(0.2..0.95);
+        let is_in: Vec<bool> = (0..SIDE * SIDE).map(|_| rng.random_bool(share)).collect();
+        let twice = rng.random_bool(0.3);
+        let mut mesh = TriangleMesh::default();
+        for cell in (0..SIDE * SIDE).filter(|&c| is_in[c]) {
+            let corner =
+                |dx: usize, dy: usize| [(cell % SIDE + dx) as f64, (cell / SIDE + dy) as f64, 2.0];
+            let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            let mut triangles = match rng.random_bool(0.5) {
+                true => vec![[a, b, c], [a, c, d]],
+                false => vec![[a, b, d], [b, c, d]],
+            };
+            if twice && rng.random_bool(0.5) {
+                triangles.push(triangles[0]);
+            }
+            triangles.into_iter().for_each(|t| mesh.push(t));
+        }
+        let mesh = mesh.welded(1e-6);
+        let merged = merge_coplanar(&mesh, 1e-9);
+        let cells = is_in.iter().filter(|&&i| i).count();
+        assert!((merged.area() - cells as f64).abs() < 1e-9, "seed {seed}");
+        for (cell, &is_in) in is_in.iter().enumerate() {
+            let [dx, dy] = [0, 1].map(|_| rng.random_range(0.01..0.99));
+            let (x, y) = ((cell % SIDE) as f64 + dx, (cell / SIDE) as f64 + dy);
+            assert_eq!(covers(&merged, x, y), usize::from(is_in), "seed {seed}");
+        }
+        before += 2 * cells;
+        after += merged.triangles.len();
+        assert!(merged.triangles.len() <= 2 * cells, "seed {seed}");
+    }
+    // The triangles become fewer by more than a half.
+    assert!(2 * after < before, "{after} of {before}");
+}
+
 #[test]
 fn distances_to_triangles_are_those_of_all_points() {
     let mut rng = stream(5, "distance", 0);

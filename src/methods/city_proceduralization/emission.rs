@@ -10,6 +10,7 @@ use edifice_grammar::instance::{
     InstanceGrammar, InstanceRule, Placement, Posed, Repeated, Template,
 };
 use edifice_shape::triangles::{City, TriangleMesh, box_view, merge_coplanar};
+use rustc_hash::FxHashMap;
 
 /// Axiom of the grammar.
 pub const AXIOM: &str = "City";
@@ -181,6 +182,25 @@ pub(super) fn emit_rules(
     grammar
 }
 
+/// Triangles of the city that the grammar of [`emit`] derives.
+pub(super) fn derived_triangles(grammar: &InstanceGrammar) -> usize {
+    let templates = grammar.templates.iter();
+    let of_template: FxHashMap<&str, usize> = templates
+        .map(|t| (t.symbol.as_str(), t.mesh.triangles.len()))
+        .collect();
+    let of_part = |p: &Placement| of_template.get(p.symbol.as_str()).copied().unwrap_or(0);
+    let rules = grammar.rules.iter();
+    let of_rule: FxHashMap<&str, usize> = rules
+        .map(|r| (r.symbol.as_str(), r.successors.iter().map(of_part).sum()))
+        .collect();
+    let top = grammar.rules.iter().filter(|r| r.symbol == AXIOM);
+    let of_building = |b: &Placement| match b.parts.is_empty() {
+        true => of_rule.get(b.symbol.as_str()).copied().unwrap_or(0),
+        false => b.parts.iter().flatten().map(of_part).sum(),
+    };
+    top.flat_map(|r| &r.successors).map(of_building).sum()
+}
+
 /// Steps of a share: what the compact file writes.
 const SHARES: f64 = 1024.0;
 
@@ -342,18 +362,21 @@ fn part(
 /// follow each other side by side.
 fn template(component: &Component, detail: &Detail, merge: bool) -> TriangleMesh {
     // A stated template was merged when it was made.
-    let mut mesh = match merge && component.stated.is_none() {
-        true => merge_coplanar(&component.mesh, detail.coplanar),
-        false => component.mesh.clone(),
+    let merged = |mesh: TriangleMesh| match merge && component.stated.is_none() {
+        true => merge_coplanar(&mesh, detail.coplanar),
+        false => mesh,
     };
     let grid = |v: f64| (v * detail.box_steps).round() / detail.box_steps;
-    for p in &mut mesh.positions {
-        *p = [grid(p[0] + 0.5) - 0.5, grid(p[1] + 0.5) - 0.5, grid(p[2])];
-    }
+    let on_grid = |[x, y, z]: [f64; 3]| [grid(x + 0.5) - 0.5, grid(y + 0.5) - 0.5, grid(z)];
+    let mut mesh = merged(component.mesh.clone());
+    mesh.positions.iter_mut().for_each(|p| *p = on_grid(*p));
+    // Levels that lay apart by less than a step lie in one plane now.
+    let step = 0.5 / detail.box_steps;
+    let mut mesh = merged(mesh.welded(step));
     if component.texture.is_some() || !component.looks.is_empty() {
         let positions = &mesh.positions;
         let view = |t: &[u32; 3]| box_view(t.map(|i| positions[i as usize]));
         mesh.triangles.sort_by_key(view);
     }
-    mesh.welded(0.5 / detail.box_steps)
+    mesh.welded(step)
 }

@@ -73,26 +73,28 @@ impl Table<'_> {
         &self.rows[i * self.d..(i + 1) * self.d]
     }
 
-    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids, uses and prices.
+    /// Rounds of: a medoid for each type; the best medoid, and quarter turn, for each component. Medoids, uses and prices, that of
+    /// derived triangles so many times the usual.
     pub(super) fn medoids(
         &self,
         mut uses: Vec<Use>,
         count: usize,
+        times: f64,
     ) -> (Vec<usize>, Vec<Use>, Price) {
         let mut medoids = self.choose(&uses, count, &[], Price::default());
         let mut price = Price::default();
         for _ in 0..ROUNDS {
-            price = self.price(&medoids, &uses);
+            price = self.price(&medoids, &uses, times);
             uses = self.assign(&medoids, &uses, price);
-            price = self.price(&medoids, &uses);
+            price = self.price(&medoids, &uses, times);
             medoids = self.choose(&uses, count, &medoids, price);
         }
         let uses = self.assign(&medoids, &uses, price);
         (medoids, uses, price)
     }
 
-    /// The prices around given types.
-    pub(super) fn price(&self, medoids: &[usize], uses: &[Use]) -> Price {
+    /// The prices around given types; derived triangles cost so many `times` the usual.
+    pub(super) fn price(&self, medoids: &[usize], uses: &[Use], times: f64) -> Price {
         let apart = |i: usize| {
             let Use { kind, quarter } = uses[i];
             self.weights[i] * mismatch(self.forms[medoids[kind]], self.forms[i], quarter)
@@ -107,7 +109,7 @@ impl Table<'_> {
         if !self.few {
             return Price {
                 template: 0.0,
-                derived: DERIVED * apart / derived.max(1.0),
+                derived: times * DERIVED * apart / derived.max(1.0),
             };
         }
         let templates: f64 = (medoids.iter().zip(&used))
@@ -116,7 +118,7 @@ impl Table<'_> {
             .sum();
         Price {
             template: apart / templates.max(1.0),
-            derived: DERIVED_FEW * apart / derived.max(1.0),
+            derived: times * DERIVED_FEW * apart / derived.max(1.0),
         }
     }
 

@@ -7,7 +7,7 @@ use super::building_types::{BuildingTypes, building_types};
 use super::component::Component;
 use super::components::{Decomposition, decompose};
 use super::detail::Detail;
-use super::emission::{Found, emit, emit_tree, placed_components};
+use super::emission::{Found, derived_triangles, emit, emit_tree, placed_components};
 use super::features::geometric_features;
 use super::parse_tree::{ParseTree, grow};
 use super::patterns::patterns;
@@ -220,6 +220,33 @@ impl<'a> Prepared<'a> {
                 structure: Structure::Tree(tree),
             };
         };
+        let own: usize = city.buildings.iter().map(|b| b.mesh.triangles.len()).sum();
+        let (mut flat, mut types, mut detail) = self.flat(best, budget, k, 1.0);
+        for times in DEARER {
+            if types.is_free() || derived_triangles(&flat) <= own {
+                break;
+            }
+            (flat, types, detail) = self.flat(best, budget, k, times);
+        }
+        Made {
+            grammar: arrange(&flat, &detail.grid()),
+            types: types.types,
+            structure: Structure::Patterns {
+                buildings: best.buildings.clone(),
+                patterns: best.patterns.clone(),
+            },
+        }
+    }
+
+    /// The grammar of `best` before buildings are arranged in rows, blocks and districts; derived triangles cost so many `times` the usual.
+    fn flat(
+        &self,
+        best: &Best,
+        budget: Budget,
+        k: usize,
+        times: f64,
+    ) -> (InstanceGrammar, Priced, Detail) {
+        let (components, settings) = (self.components, self.settings);
         let stated = best.stated.as_ref();
         let stated = stated.filter(|s| s.representatives.len() <= k);
         let free = Priced::free;
@@ -228,7 +255,7 @@ impl<'a> Prepared<'a> {
             (Some(stated), _) => (free(stated.clone()), Detail::CENTIMETRE),
             (None, Budget::All) => (free(distinct_types(components)), Detail::MILLIMETRE),
             (None, _) => match &best.types {
-                Some(types) => (types.cut(k), Detail::CENTIMETRE),
+                Some(types) => (types.cut(k, times), Detail::CENTIMETRE),
                 None => (free(distinct_types(components)), Detail::CENTIMETRE),
             },
         };
@@ -243,23 +270,19 @@ impl<'a> Prepared<'a> {
             None => detail,
         };
         let exact = stated.is_some() || budget == Budget::All;
-        let (buildings, patterns) = (&best.buildings, &best.patterns);
         let rulebook = best.stacks.rulebook(&priced, k);
         let found = Found {
-            city,
+            city: self.city,
             components,
             types: &priced.types,
-            buildings,
+            buildings: &best.buildings,
             rulebook: &rulebook,
-            patterns,
+            patterns: &best.patterns,
         };
-        Made {
-            grammar: arrange(&emit(&found, &detail, exact), &detail.grid()),
-            types: priced.types,
-            structure: Structure::Patterns {
-                buildings: buildings.clone(),
-                patterns: patterns.clone(),
-            },
-        }
+        (emit(&found, &detail, exact), priced, detail)
     }
 }
+
+/// How many times dearer derived triangles become, one after the other, while there are more of them than the city has. Delft has
+/// 1,682,341; 2,308,261 are derived at the usual price (intersection over union 0.970), 1,653,670 at the first of these (0.967).
+const DEARER: [f64; 2] = [10.0, 30.0];

@@ -8,7 +8,7 @@ use edifice_grammar::instance::InstanceGrammar;
 use edifice_shape::triangles::City;
 
 /// Steps of the search for a number of templates.
-const SEARCH_STEPS: usize = 7;
+const SEARCH_STEPS: usize = 9;
 
 /// The grammar of the most templates that `fits`, on the assumption that fewer templates fit as well; `None`
 /// when one template does not fit. Stopped by `watch`, it is the most of those tried.

@@ -257,8 +257,8 @@ impl<'a> TypeTree<'a> {
 
     /// The hierarchy cut at more than `k` types; then rounds of Lloyd, and of medoids under the mismatched volume over the four
     /// quarter turns; then, for few polygons, the `k` types of most worth, again with rounds of medoids.
-    /// Types that stand for more components come first. Also their prices.
-    pub(super) fn cut(&self, k: usize) -> Priced {
+    /// Types that stand for more components come first. Also their prices, that of derived triangles so many `times` the usual.
+    pub(super) fn cut(&self, k: usize, times: f64) -> Priced {
         let Table {
             rows, d, weights, ..
         } = &self.table;
@@ -274,10 +274,10 @@ impl<'a> TypeTree<'a> {
         }
         let (labels, count) = renumbered(&labels);
         let uses = labels.into_iter().map(|kind| Use { kind, quarter: 0 });
-        let (mut medoids, mut uses, mut price) = self.table.medoids(uses.collect(), count);
+        let (mut medoids, mut uses, mut price) = self.table.medoids(uses.collect(), count, times);
         if medoids.len() > k {
             (medoids, uses) = pruned(&self.table, &medoids, &uses, price, k);
-            (medoids, uses, price) = self.table.medoids(uses, medoids.len());
+            (medoids, uses, price) = self.table.medoids(uses, medoids.len(), times);
         }
         let types = Types {
             representatives: medoids.iter().map(|&m| self.distinct[m]).collect(),
@@ -323,6 +323,11 @@ impl Priced {
             types,
             price: Price::default(),
         }
+    }
+
+    /// True for types whose triangles cost nothing.
+    pub(super) fn is_free(&self) -> bool {
+        self.price == Price::default()
     }
 }
 

@@ -13,7 +13,8 @@ use crate::vec3::{cross, dot, norm, sub};
 /// area stays as it was. Straight runs of the outline lose their inner corners, so that neighbouring
 /// regions need not share every corner any more: the surface stays closed up to `tolerance`.
 pub fn merge_coplanar(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
-    let neighbours = neighbours(mesh);
+    let mesh = &distinct(mesh);
+    let neighbours = neighbours(&mesh.triangles);
     let at = |i: u32| mesh.positions[i as usize];
     let mut region = vec![usize::MAX; mesh.triangles.len()];
     let mut out = TriangleMesh::default();
@@ -32,7 +33,7 @@ pub fn merge_coplanar(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
         region[start] = start;
         let mut next = 0;
         while next < members.len() {
-            for &other in neighbours[members[next]].iter().flatten() {
+            for &other in &neighbours[members[next]] {
                 let t = mesh.triangles[other].map(at);
                 let flat = |p: &[f64; 3]| dot(sub(*p, corners[0]), n).abs() <= tolerance;
                 let m = normal(&t);
@@ -58,23 +59,38 @@ pub fn merge_coplanar(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
     out.welded(tolerance.min(1e-6))
 }
 
-/// The neighbour of each triangle over each edge, where exactly two triangles share the edge.
-fn neighbours(mesh: &TriangleMesh) -> Vec<[Option<usize>; 3]> {
-    let mut edges: FxHashMap<(u32, u32), Vec<(usize, usize)>> = FxHashMap::default();
-    for (i, t) in mesh.triangles.iter().enumerate() {
-        for k in 0..3 {
-            let (a, b) = (t[k], t[(k + 1) % 3]);
-            edges.entry((a.min(b), a.max(b))).or_default().push((i, k));
+/// Without triangles that are there twice.
+fn distinct(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut known = rustc_hash::FxHashSet::default();
+    let first = |t: &[u32; 3]| {
+        let least = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+        [0, 1, 2].map(|k| t[(least + k) % 3])
+    };
+    let triangles = mesh.triangles.iter().filter(|t| known.insert(first(t)));
+    TriangleMesh {
+        positions: mesh.positions.clone(),
+        triangles: triangles.copied().collect(),
+    }
+}
+
+/// The triangles over each edge of each triangle: those that have it the other way round.
+fn neighbours(triangles: &[[u32; 3]]) -> Vec<Vec<usize>> {
+    let edges = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[k], t[(k + 1) % 3]));
+    let mut owners: FxHashMap<(u32, u32), Vec<usize>> = FxHashMap::default();
+    for (i, t) in triangles.iter().enumerate() {
+        for edge in edges(t) {
+            owners.entry(edge).or_default().push(i);
         }
     }
-    let mut out = vec![[None; 3]; mesh.triangles.len()];
-    for pair in edges.values() {
-        if let [(i, k), (j, l)] = pair[..] {
-            out[i][k] = Some(j);
-            out[j][l] = Some(i);
-        }
-    }
-    out
+    let beyond = |(a, b)| match (
+        owners.get(&(a, b)).map(Vec::as_slice),
+        owners.get(&(b, a)).map(Vec::as_slice),
+    ) {
+        (Some([_]), Some(&[other])) => Some(other),
+        _ => None,
+    };
+    let one = |t| edges(t).into_iter().flat_map(beyond).collect();
+    triangles.iter().map(one).collect()
 }
 
 /// A region's triangles anew; `None` when its outline is not made of simple rings.
@@ -84,7 +100,7 @@ fn outline(
     n: [f64; 3],
     tolerance: f64,
 ) -> Option<Vec<super::Corners>> {
-    let mut boundary: FxHashMap<u32, u32> = FxHashMap::default();
+    let mut boundary: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
     let mut inner: FxHashMap<(u32, u32), ()> = FxHashMap::default();
     for &m in members {
         let t = mesh.triangles[m];
@@ -98,10 +114,7 @@ fn outline(
         for k in 0..3 {
             let (a, b) = (t[k], t[(k + 1) % 3]);
             if !inner.contains_key(&(b, a)) {
-                // A corner that the outline passes twice.
-                if boundary.insert(a, b).is_some() {
-                    return None;
-                }
+                boundary.entry(a).or_default().push(b);
                 order.push(a);
             }
         }
@@ -122,17 +135,16 @@ fn outline(
     let mut rings: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut corners: Vec<Vec<u32>> = Vec::new();
     for start in order {
-        let mut ring = Vec::new();
-        let mut at = start;
-        while let Some(to) = boundary.remove(&at) {
-            ring.push(at);
-            at = to;
-        }
-        if ring.is_empty() {
+        let Some(mut to) = boundary.get_mut(&start).and_then(Vec::pop) else {
             continue;
-        }
-        if at != start {
-            return None;
+        };
+        let mut ring = vec![start];
+        while to != start {
+            let from = ring[ring.len() - 1];
+            let ends = boundary.get_mut(&to)?;
+            let next = nearest_turn(flat(from), flat(to), ends, flat)?;
+            ring.push(to);
+            to = ends.swap_remove(next);
         }
         let ring = straightened(ring, flat, tolerance);
         if ring.len() > 2 {
@@ -166,6 +178,29 @@ fn outline(
         .sum();
     let same = |a: f64| (a - whole).abs() <= 1e-3 * whole + tolerance;
     (same(area) && same(made)).then_some(found)
+}
+
+/// Which of the edges from `at` to `ends` is met first, clockwise from the one that leads back to `from`: it bounds the same part of the
+/// region, which lies on the left of both, where the outline passes a corner more than once.
+fn nearest_turn(
+    from: [f64; 2],
+    at: [f64; 2],
+    ends: &[u32],
+    flat: impl Fn(u32) -> [f64; 2],
+) -> Option<usize> {
+    let away = |p: [f64; 2]| [p[0] - at[0], p[1] - at[1]];
+    let back = away(from);
+    let clockwise = |&i: &usize| {
+        let d = away(flat(ends[i]));
+        let sin = d[0] * back[1] - d[1] * back[0];
+        let cos = d[0] * back[0] + d[1] * back[1];
+        match sin.atan2(cos) {
+            angle if angle > 0.0 => angle,
+            angle => angle + std::f64::consts::TAU,
+        }
+    };
+    let turns: Vec<f64> = (0..ends.len()).map(|i| clockwise(&i)).collect();
+    (0..ends.len()).min_by(|&a, &b| turns[a].total_cmp(&turns[b]))
 }
 
 /// Drops corners that lie within `tolerance` of the line between their neighbours.

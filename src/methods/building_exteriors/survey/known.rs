@@ -31,8 +31,10 @@ const YEARS: [&str; 5] = [
     "year",
 ];
 const USES: [&str; 4] = ["function", "usage", "gebruiksdoel", "use"];
-/// Words and codes of dwellings: code lists of the German surveys (`31001_1000` to 1999, 9997 and 9998 unknown), PLATEAU
-/// (411 house, 412 flats), INSPIRE.
+/// Codes of dwellings: PLATEAU (house, flats, house with a shop); functions of buildings in CityGML's code lists (from the residential
+/// building to the summer house), which the German surveys have, too.
+const DWELLING_CODES: [std::ops::RangeInclusive<u32>; 2] = [411..=413, 1000..=1110];
+/// Words and codes of dwellings: code lists of the German surveys (`31001_1000` to 1999, 9997 and 9998 unknown), INSPIRE.
 const DWELLINGS: [&str; 7] = [
     "wohn", "woon", "resid", "dwelling", "house", "home", "31001_1",
 ];
@@ -78,20 +80,49 @@ impl Known {
         if low.is_empty() || UNKNOWN.contains(&low.as_str()) {
             return;
         }
-        let plateau = ["411", "412", "413", "1000"].contains(&low.as_str());
-        match plateau || DWELLINGS.iter().any(|d| low.contains(d)) {
+        let code = low.parse().ok();
+        let coded = code.is_some_and(|c| DWELLING_CODES.iter().any(|codes| codes.contains(&c)));
+        match coded || DWELLINGS.iter().any(|d| low.contains(d)) {
             true => self.is_dwelling = true,
             false => self.other_use = self.other_use.take().or(Some(text.to_owned())),
         }
     }
 }
 
-/// A text, or the texts of a list.
+/// A text, or the texts of a list; codes that a reader took for numbers are whole ones.
 fn text(value: &Value) -> String {
     match value {
         Value::String(s) => s.clone(),
-        Value::Number(n) => n.to_string(),
+        Value::Number(n) => match n.as_f64() {
+            Some(code) => code.to_string(),
+            None => n.to_string(),
+        },
         Value::Array(list) => list.iter().map(text).collect::<Vec<_>>().join(" "),
         _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn used_as(value: Value) -> Known {
+        Known::new(&Map::from_iter([("function".to_owned(), value)]))
+    }
+
+    #[test]
+    fn codes_are_read_as_numbers_and_as_texts() {
+        // Readers take the text "411" for the number 411.0.
+        for code in ["411", "412", "1000", "1010"] {
+            let number: f64 = code.parse().unwrap();
+            for value in [code.into(), number.into(), vec![number].into()] {
+                let known = used_as(value);
+                assert!(known.is_dwelling && known.other_use.is_none(), "{code}");
+            }
+        }
+        for code in [422.0, 1120.0, 2000.0] {
+            let known = used_as(code.into());
+            assert_eq!(known.other_use, Some(code.to_string()));
+        }
     }
 }

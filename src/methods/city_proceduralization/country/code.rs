@@ -145,7 +145,7 @@ impl Pool {
             quarter: 0,
         };
         let uses = table.assign(&medoids, &vec![first; self.free], Price::default());
-        let price = table.price(&medoids, &uses[..self.own]);
+        let price = table.price(&medoids, &uses[..self.own], 1.0);
         let uses = table.assign(&medoids, &uses, price);
         let locals: Vec<usize> = (self.local..self.components.len()).collect();
         let chosen = self.chosen(&table, &medoids, &uses, &locals, price, more);

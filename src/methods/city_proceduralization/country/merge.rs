@@ -47,7 +47,7 @@ pub fn merge(
         mut types,
         triangles,
         price,
-    } = tree.cut(k);
+    } = tree.cut(k, 1.0);
     drop(tree);
     // What the chosen stand for.
     let mut stands = vec![Stands::default(); types.representatives.len()];

@@ -28,7 +28,7 @@ pub fn propose(
         .types(components.len())
         .min(settings.proposed.max(1));
     let shape = geometric_features(&components);
-    let priced = TypeTree::new(&components, &shape, settings.representative)?.cut(k);
+    let priced = TypeTree::new(&components, &shape, settings.representative)?.cut(k, 1.0);
     if !watched.goes_on(Progress::stage("rules of buildings over templates")) {
         return Err(ProceduralizeError::Stopped);
     }
