@@ -76,8 +76,12 @@ fn walls_keep_their_corners_and_openings_lie_in_them() {
         block([100.0, 0.0, 3.0], [24.0, 14.0, 17.5]),
         block([200.0, 0.0, 0.0], [3.0, 2.5, 2.4]),
     ];
+    let mut counts = [0, 0];
     for seed in 1..4 {
         let all = dressed(&blocks, seed);
+        for (count, own) in counts.iter_mut().zip(&all) {
+            *count += openings(own).count();
+        }
         for (block, own) in blocks.iter().zip(&all) {
             for p in &block.positions {
                 assert!(own.positions.iter().any(|q| q == p), "{p:?} is lost");
@@ -108,12 +112,13 @@ fn walls_keep_their_corners_and_openings_lie_in_them() {
             "{}",
             openings(&all[0]).count()
         );
-        assert!(openings(&all[1]).count() > openings(&all[0]).count());
         for shell in shells(&all) {
             assert!(shell.is_solid);
             assert_eq!(detailed_cityjson::faults(&shell), Vec::<String>::new());
         }
     }
+    // Single draws of six storeys with few windows exist.
+    assert!(counts[1] > 2 * counts[0], "{counts:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use edifice::io::building_json;
+use edifice::io::{building_csv, building_json};
 use edifice::methods::building_exteriors::attributes::{GROUPS, Level, attributes};
 use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
@@ -34,6 +34,31 @@ fn shipped_houses_and_truth_are_the_generators() {
     }
     assert_eq!(building_json::read(&database).unwrap(), buildings);
     assert_eq!(std::fs::read_to_string(&truth_file).unwrap(), truth);
+}
+
+/// A city model of this level of detail shows towers: where no small part stands above all others, there is none.
+#[test]
+fn towers_of_delft_are_those_that_its_model_shows() {
+    let table = building_csv::read(&folder().join("real.houses.csv")).unwrap();
+    let column = table.header.iter().position(|h| h == "special.tower");
+    let column = column.unwrap();
+    let rows = table.rows.iter().filter(|r| r[0] == "delft");
+    let cells: Vec<&str> = rows.map(|r| r[column].as_str()).collect();
+    let delft = building_json::read(&folder().join("delft.buildings.jsonl")).unwrap();
+    assert_eq!(cells.len(), delft.len());
+    for (cell, house) in cells.into_iter().zip(&delft) {
+        let boxes = &house.boxes;
+        let is_above = |i: usize| {
+            let others = (0..boxes.len()).filter(|&j| j != i);
+            boxes.len() > 1
+                && others
+                    .into_iter()
+                    .all(|j| boxes[i].height > boxes[j].height + 1.0)
+        };
+        let is_small = |i: usize| boxes[i].width.max(boxes[i].depth) <= 4.5;
+        let has = (0..boxes.len()).any(|i| is_small(i) && is_above(i));
+        assert_eq!(cell, if has { "" } else { "no" }, "{}", house.name);
+    }
 }
 
 #[test]
