@@ -7,7 +7,9 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use edifice::io::city::obj;
+use edifice::rng::stream;
 use edifice_generators::city_proceduralization as synthetic;
+use rand::RngExt;
 use serde_json::Value;
 
 fn edifice(folder: &Path, args: &[&str]) -> Command {
@@ -168,4 +170,26 @@ fn a_building_in_two_tiles_and_a_changed_tile_are_refused() {
         messages.contains("d.obj") && messages.contains("has changed"),
         "{messages}"
     );
+}
+
+/// Meshes that are open and partly inside out, whose volumes may come out below 0, are work like any other.
+#[test]
+fn damaged_buildings_are_coded_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut city, _) = synthetic::city(16, 0.05, 3);
+    let mut rng = stream(1, "tests/damaged", 0);
+    for building in &mut city.buildings {
+        building.mesh.triangles.retain(|_| rng.random_bool(0.6));
+        for t in &mut building.mesh.triangles {
+            if rng.random_bool(0.5) {
+                t.swap(0, 1);
+            }
+        }
+    }
+    std::fs::write(folder.path().join("c.obj"), obj::to_string(&city)).unwrap();
+    line(
+        folder.path(),
+        &["plan", "c.obj", "--level", "0", "-o", "out"],
+    );
+    line(folder.path(), &["work", "out", "--workers", "1"]);
 }

@@ -261,6 +261,82 @@ fn merging_coplanar_triangles_keeps_the_solid() {
     }
 }
 
+/// Edges that are met by more triangles from one side than from the other.
+fn open_edges(mesh: &TriangleMesh) -> usize {
+    let mut excess: std::collections::HashMap<(u32, u32), i32> = Default::default();
+    for t in &mesh.triangles {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            *excess.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+        }
+    }
+    excess.values().filter(|&&n| n != 0).count()
+}
+
+/// Random heights over the cells of a grid, each face a square of two triangles: closed before, closed after, the same solid, whether the
+/// corners lie on a grid or a little beside it.
+#[test]
+fn merging_keeps_closed_solids_closed() {
+    const SIDE: usize = 5;
+    let (mut before, mut after) = (0, 0);
+    for seed in 0..2000 {
+        let mut rng = stream(seed, "solids", 0);
+        let most = rng.random_range(1..4);
+        let heights: Vec<usize> = (0..SIDE * SIDE)
+            .map(|_| rng.random_range(0..=most))
+            .collect();
+        let filled = |p: [i64; 3]| {
+            let is_in = (0..2).all(|k| (0..SIDE as i64).contains(&p[k]));
+            is_in && p[2] >= 0 && p[2] < heights[(p[1] * SIDE as i64 + p[0]) as usize] as i64
+        };
+        let mut mesh = TriangleMesh::default();
+        for cell in 0..SIDE * SIDE * 3 {
+            let p = [cell % SIDE, cell / SIDE % SIDE, cell / (SIDE * SIDE)].map(|v| v as i64);
+            for (axis, ahead) in (0..3).flat_map(|a| [(a, true), (a, false)]) {
+                let mut beside = p;
+                beside[axis] += if ahead { 1 } else { -1 };
+                if !filled(p) || filled(beside) {
+                    continue;
+                }
+                let corner = |u: i64, v: i64| {
+                    let mut q = p;
+                    q[axis] += i64::from(ahead);
+                    q[(axis + 1) % 3] += u;
+                    q[(axis + 2) % 3] += v;
+                    q.map(|v| v as f64)
+                };
+                let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+                match ahead {
+                    true => [[a, b, c], [a, c, d]]
+                        .into_iter()
+                        .for_each(|t| mesh.push(t)),
+                    false => [[a, c, b], [a, d, c]]
+                        .into_iter()
+                        .for_each(|t| mesh.push(t)),
+                }
+            }
+        }
+        let mut mesh = mesh.welded(1e-6);
+        let mut tolerance = 1e-9;
+        if rng.random_bool(0.5) {
+            tolerance = 1e-3;
+            for p in &mut mesh.positions {
+                *p = p.map(|v| v + rng.random_range(-2e-4..2e-4));
+            }
+        }
+        assert_eq!(open_edges(&mesh), 0, "seed {seed}");
+        let merged = merge_coplanar(&mesh, tolerance);
+        assert_eq!(open_edges(&merged), 0, "seed {seed}");
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 + 4.0 * tolerance * b.max(1.0);
+        assert!(near(merged.area(), mesh.area()), "seed {seed}");
+        let volumes = [&merged, &mesh].map(|m| m.volume_above(0.0));
+        assert!(near(volumes[0], volumes[1]), "seed {seed}: {volumes:?}");
+        before += mesh.triangles.len();
+        after += merged.triangles.len();
+    }
+    println!("{after} of {before}");
+    assert!(3 * after < 2 * before, "{after} of {before}");
+}
+
 /// Random cells of a grid, many of which touch at a corner only and have holes that touch: merged, they cover the same places once, also
 /// where triangles are there twice.
 #[test]

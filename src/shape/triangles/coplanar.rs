@@ -1,67 +1,162 @@
 //! The same surface with fewer triangles: neighbouring coplanar triangles are joined into polygons,
 //! corners in the middle of straight edges dropped, and the polygons triangulated anew.
 
-use rustc_hash::FxHashMap;
+mod outline;
 
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use self::outline::{Outline, edges};
 use super::TriangleMesh;
 use super::mesh::normal;
-use super::triangulate::{nest, ring_area, triangles};
-use crate::vec3::{cross, dot, norm, sub};
+use crate::vec3::{dot, norm, sub};
 
 /// Merges coplanar neighbours: joined are triangles that share an edge and whose corners lie within
 /// `tolerance` metres of the plane of the first. A region whose outline cannot be triangulated to the same
-/// area stays as it was. Straight runs of the outline lose their inner corners, so that neighbouring
-/// regions need not share every corner any more: the surface stays closed up to `tolerance`.
+/// area stays as it was. Straight runs of the outline lose their inner corners. Where each edge is met by as many triangles from
+/// one side as from the other, it still is: neighbouring regions drop the same corners. Elsewhere they need not share every corner,
+/// and the surface is the same up to `tolerance`.
 pub fn merge_coplanar(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
+    if !is_closed(&mesh.triangles) {
+        return merged_open(mesh, tolerance);
+    }
+    let merged = merged_closed(mesh, tolerance);
+    match merged.filter(|m| is_closed(&m.triangles)) {
+        Some(merged) => merged,
+        None => mesh.clone(),
+    }
+}
+
+/// True if each edge is met by as many triangles from one side as from the other.
+fn is_closed(triangles: &[[u32; 3]]) -> bool {
+    let mut excess: FxHashMap<(u32, u32), i64> = FxHashMap::default();
+    for (a, b) in triangles.iter().flat_map(edges) {
+        *excess.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+    }
+    excess.values().all(|&n| n == 0)
+}
+
+/// Each region drops the corners that its own outline does not need.
+fn merged_open(mesh: &TriangleMesh, tolerance: f64) -> TriangleMesh {
     let mesh = &distinct(mesh);
+    let mut out = TriangleMesh::default();
+    for region in regions(mesh, tolerance) {
+        // A region of one triangle without area is nothing.
+        let Some(n) = region.normal else { continue };
+        let merged = (region.members.len() > 1)
+            .then(|| Outline::of(mesh, &region.members, n))
+            .flatten()
+            .and_then(|o| o.triangulated(&o.straightened(tolerance), tolerance));
+        push(&mut out, mesh, &region, merged);
+    }
+    out.welded(tolerance.min(1e-6))
+}
+
+/// Adds a region's new triangles, or its own where they are no fewer.
+fn push(out: &mut TriangleMesh, mesh: &TriangleMesh, region: &Region, new: Option<Vec<[u32; 3]>>) {
+    let new = new.filter(|t| t.len() < region.members.len());
+    let own = || region.members.iter().map(|&m| mesh.triangles[m]);
+    for t in new.unwrap_or_else(|| own().collect()) {
+        out.push(t.map(|i| mesh.positions[i as usize]));
+    }
+}
+
+/// A corner is dropped where no region's outline needs it; `None` where no such set of corners is found.
+fn merged_closed(mesh: &TriangleMesh, tolerance: f64) -> Option<TriangleMesh> {
+    let regions = regions(mesh, tolerance);
+    let outline = |r: &Region| match r.normal {
+        Some(n) if r.members.len() > 1 => Outline::of(mesh, &r.members, n),
+        _ => None,
+    };
+    let outlines: Vec<Option<Outline>> = regions.iter().map(outline).collect();
+    let mut stays = vec![false; mesh.positions.len()];
+    let all = |region: &Region, stays: &mut Vec<bool>| {
+        let corners = region.members.iter().flat_map(|&m| mesh.triangles[m]);
+        corners.for_each(|i| stays[i as usize] = true);
+    };
+    for (region, outline) in regions.iter().zip(&outlines) {
+        match outline {
+            Some(outline) => outline
+                .straightened(tolerance)
+                .into_iter()
+                .flatten()
+                .for_each(|i| stays[i as usize] = true),
+            None => all(region, &mut stays),
+        }
+    }
+    let mut is_as_it_was: Vec<bool> = outlines.iter().map(Option::is_none).collect();
+    for _ in 0..ROUNDS {
+        let mut out = TriangleMesh::default();
+        let mut is_settled = true;
+        for (k, region) in regions.iter().enumerate() {
+            let own = outlines[k].as_ref().filter(|_| !is_as_it_was[k]);
+            let new = own.and_then(|o| {
+                o.triangulated(&o.with_corners(&stays), tolerance)
+                    .filter(|t| t.len() < region.members.len())
+            });
+            if own.is_some() && new.is_none() {
+                // Its triangles stay, and so do all of their corners.
+                is_as_it_was[k] = true;
+                all(region, &mut stays);
+                is_settled = false;
+            }
+            push(&mut out, mesh, region, new);
+        }
+        if is_settled {
+            return Some(out.welded(tolerance.min(1e-9)));
+        }
+    }
+    None
+}
+
+/// Most rounds in which regions that cannot be merged are found.
+const ROUNDS: usize = 20;
+
+/// Connected triangles near a plane.
+struct Region {
+    members: Vec<usize>,
+    /// Of length 1; `None` for a single triangle without an area.
+    normal: Option<[f64; 3]>,
+}
+
+fn regions(mesh: &TriangleMesh, tolerance: f64) -> Vec<Region> {
     let neighbours = neighbours(&mesh.triangles);
     let at = |i: u32| mesh.positions[i as usize];
-    let mut region = vec![usize::MAX; mesh.triangles.len()];
-    let mut out = TriangleMesh::default();
+    let mut is_taken = vec![false; mesh.triangles.len()];
+    let mut out = Vec::new();
     for start in 0..mesh.triangles.len() {
-        if region[start] != usize::MAX {
+        if is_taken[start] {
             continue;
         }
+        is_taken[start] = true;
+        let mut members = vec![start];
         let corners = mesh.triangles[start].map(at);
         let n = normal(&corners);
         let length = norm(n);
-        if length == 0.0 {
-            continue;
-        }
-        let n = n.map(|v| v / length);
-        let mut members = vec![start];
-        region[start] = start;
+        let normal_of = (length > 0.0).then(|| n.map(|v| v / length));
         let mut next = 0;
-        while next < members.len() {
-            for &other in &neighbours[members[next]] {
+        while let (Some(n), Some(&member)) = (normal_of, members.get(next)) {
+            for &other in &neighbours[member] {
                 let t = mesh.triangles[other].map(at);
                 let flat = |p: &[f64; 3]| dot(sub(*p, corners[0]), n).abs() <= tolerance;
                 let m = normal(&t);
-                if region[other] == usize::MAX && t.iter().all(flat) && dot(m, n) > 0.9 * norm(m) {
-                    region[other] = start;
+                if !is_taken[other] && t.iter().all(flat) && dot(m, n) > 0.9 * norm(m) {
+                    is_taken[other] = true;
                     members.push(other);
                 }
             }
             next += 1;
         }
-        let merged = (members.len() > 1)
-            .then(|| outline(mesh, &members, n, tolerance))
-            .flatten();
-        match merged {
-            Some(triangles) if triangles.len() < members.len() => {
-                triangles.into_iter().for_each(|t| out.push(t));
-            }
-            _ => members
-                .iter()
-                .for_each(|&m| out.push(mesh.triangles[m].map(at))),
-        }
+        out.push(Region {
+            members,
+            normal: normal_of,
+        });
     }
-    out.welded(tolerance.min(1e-6))
+    out
 }
 
 /// Without triangles that are there twice.
 fn distinct(mesh: &TriangleMesh) -> TriangleMesh {
-    let mut known = rustc_hash::FxHashSet::default();
+    let mut known = FxHashSet::default();
     let first = |t: &[u32; 3]| {
         let least = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
         [0, 1, 2].map(|k| t[(least + k) % 3])
@@ -75,7 +170,6 @@ fn distinct(mesh: &TriangleMesh) -> TriangleMesh {
 
 /// The triangles over each edge of each triangle: those that have it the other way round.
 fn neighbours(triangles: &[[u32; 3]]) -> Vec<Vec<usize>> {
-    let edges = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[k], t[(k + 1) % 3]));
     let mut owners: FxHashMap<(u32, u32), Vec<usize>> = FxHashMap::default();
     for (i, t) in triangles.iter().enumerate() {
         for edge in edges(t) {
@@ -91,133 +185,4 @@ fn neighbours(triangles: &[[u32; 3]]) -> Vec<Vec<usize>> {
     };
     let one = |t| edges(t).into_iter().flat_map(beyond).collect();
     triangles.iter().map(one).collect()
-}
-
-/// A region's triangles anew; `None` when its outline is not made of simple rings.
-fn outline(
-    mesh: &TriangleMesh,
-    members: &[usize],
-    n: [f64; 3],
-    tolerance: f64,
-) -> Option<Vec<super::Corners>> {
-    let mut boundary: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
-    let mut inner: FxHashMap<(u32, u32), ()> = FxHashMap::default();
-    for &m in members {
-        let t = mesh.triangles[m];
-        for k in 0..3 {
-            inner.insert((t[k], t[(k + 1) % 3]), ());
-        }
-    }
-    let mut order = Vec::new();
-    for &m in members {
-        let t = mesh.triangles[m];
-        for k in 0..3 {
-            let (a, b) = (t[k], t[(k + 1) % 3]);
-            if !inner.contains_key(&(b, a)) {
-                boundary.entry(a).or_default().push(b);
-                order.push(a);
-            }
-        }
-    }
-    // Axes in the plane, right-handed with the normal.
-    let seed = if n[2].abs() < 0.9 {
-        [0.0, 0.0, 1.0]
-    } else {
-        [1.0, 0.0, 0.0]
-    };
-    let u = cross(seed, n);
-    let u = u.map(|v| v / norm(u));
-    let v = cross(n, u);
-    let flat = |i: u32| {
-        let p = mesh.positions[i as usize];
-        [dot(p, u), dot(p, v)]
-    };
-    let mut rings: Vec<Vec<[f64; 2]>> = Vec::new();
-    let mut corners: Vec<Vec<u32>> = Vec::new();
-    for start in order {
-        let Some(mut to) = boundary.get_mut(&start).and_then(Vec::pop) else {
-            continue;
-        };
-        let mut ring = vec![start];
-        while to != start {
-            let from = ring[ring.len() - 1];
-            let ends = boundary.get_mut(&to)?;
-            let next = nearest_turn(flat(from), flat(to), ends, flat)?;
-            ring.push(to);
-            to = ends.swap_remove(next);
-        }
-        let ring = straightened(ring, flat, tolerance);
-        if ring.len() > 2 {
-            rings.push(ring.iter().map(|&i| flat(i)).collect());
-            corners.push(ring);
-        }
-    }
-    let area: f64 = rings.iter().map(|r| ring_area(r)).sum();
-    let mut found = Vec::new();
-    let mut made = 0.0;
-    for polygon in nest(&rings) {
-        let parts: Vec<&[[f64; 2]]> = polygon.iter().map(|&i| rings[i].as_slice()).collect();
-        for t in triangles(&parts) {
-            let plan = t.map(|(r, k)| parts[r][k]);
-            let corner = t.map(|(r, k)| mesh.positions[corners[polygon[r]][k] as usize]);
-            let a = ring_area(&plan);
-            made += a.abs();
-            match a >= 0.0 {
-                true => found.push(corner),
-                false => found.push([corner[0], corner[2], corner[1]]),
-            }
-        }
-    }
-    let whole: f64 = members
-        .iter()
-        .map(|&m| {
-            norm(normal(
-                &mesh.triangles[m].map(|i| mesh.positions[i as usize]),
-            )) / 2.0
-        })
-        .sum();
-    let same = |a: f64| (a - whole).abs() <= 1e-3 * whole + tolerance;
-    (same(area) && same(made)).then_some(found)
-}
-
-/// Which of the edges from `at` to `ends` is met first, clockwise from the one that leads back to `from`: it bounds the same part of the
-/// region, which lies on the left of both, where the outline passes a corner more than once.
-fn nearest_turn(
-    from: [f64; 2],
-    at: [f64; 2],
-    ends: &[u32],
-    flat: impl Fn(u32) -> [f64; 2],
-) -> Option<usize> {
-    let away = |p: [f64; 2]| [p[0] - at[0], p[1] - at[1]];
-    let back = away(from);
-    let clockwise = |&i: &usize| {
-        let d = away(flat(ends[i]));
-        let sin = d[0] * back[1] - d[1] * back[0];
-        let cos = d[0] * back[0] + d[1] * back[1];
-        match sin.atan2(cos) {
-            angle if angle > 0.0 => angle,
-            angle => angle + std::f64::consts::TAU,
-        }
-    };
-    let turns: Vec<f64> = (0..ends.len()).map(|i| clockwise(&i)).collect();
-    (0..ends.len()).min_by(|&a, &b| turns[a].total_cmp(&turns[b]))
-}
-
-/// Drops corners that lie within `tolerance` of the line between their neighbours.
-fn straightened(ring: Vec<u32>, flat: impl Fn(u32) -> [f64; 2], tolerance: f64) -> Vec<u32> {
-    let mut kept: Vec<u32> = Vec::with_capacity(ring.len());
-    let n = ring.len();
-    for k in 0..n {
-        let before = kept.last().copied().unwrap_or(ring[n - 1]);
-        let [p, q, r] = [before, ring[k], ring[(k + 1) % n]].map(&flat);
-        let d = [r[0] - p[0], r[1] - p[1]];
-        let length = d[0].hypot(d[1]);
-        let e = [q[0] - p[0], q[1] - p[1]];
-        let off = (d[0] * e[1] - d[1] * e[0]).abs();
-        let along = (d[0] * e[0] + d[1] * e[1]) / (length * length).max(1e-12);
-        if off > tolerance * length || !(0.0..=1.0).contains(&along) {
-            kept.push(ring[k]);
-        }
-    }
-    kept
 }

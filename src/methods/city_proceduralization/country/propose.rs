@@ -37,7 +37,8 @@ pub fn propose(
     let mut stands = vec![Stands::default(); priced.types.representatives.len()];
     for (component, used) in components.iter().zip(&priced.types.uses) {
         stands[used.kind].count += 1.0;
-        stands[used.kind].volume += component.volume;
+        // An open mesh may have a volume below 0.
+        stands[used.kind].volume += component.volume.max(0.0);
     }
     let mut weights = vec![0.0; rulebook.rules.len()];
     let uses = rulebook.uses.iter().flatten();
