@@ -16,8 +16,8 @@
 //! | | `paper` | `best` |
 //! | --- | --- | --- |
 //! | features | vertex count of the simplified outline, width, height, depth, rotation, standardized and weighted | 16 x 16 height map in the box, turned to a canonical half turn; 12 principal components, weighted by volume |
-//! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, at a price of derived triangles, over the four quarter turns; for few polygons, the price is higher, triangles of templates have one, too, and of twice as many types those of most worth stay |
-//! | template | nearest to the mean, or of fewest triangles | medoid, coplanar triangles merged, 12 bits |
+//! | types | k-means, k halved level by level | Ward's hierarchy, then medoids under the mismatched volume, at a price of derived triangles, which rises where more would be derived than the city has, over the four quarter turns; for few polygons, the price is higher, triangles of templates have one, too, and of twice as many types those of most worth stay |
+//! | template | nearest to the mean, or of fewest triangles | medoid, 12 bits, coplanar triangles merged before and after rounding, closed where the component is |
 //! | buildings | no types of their own | rules with parameters (`rulebook`): a type's building, put into the width, depth and heights of another |
 //! | what stands together | parse tree of types of components, Girvan-Newman | [`building_types`], as many as the buildings ask for; the town plan's tree ([`arrangement`]); beside it, [`patterns`] that repeat |
 //!
