@@ -72,6 +72,41 @@ fn delft() -> Option<Vec<Building>> {
     Some(found.into_iter().flatten().map(|s| s.building).collect())
 }
 
+/// Houses have the storeys that their files tell, or one fewer, which is under the roof.
+#[test]
+fn storeys_are_those_of_the_files() {
+    let mut houses = 0;
+    for name in ["fzk_haus_lod2", "citygml3_lod2_buildings"] {
+        let path = format!("citygml/{name}.gml.xz");
+        let Some(folder) = crate::common::real_data(&path) else {
+            return;
+        };
+        let city = city::read(&folder.join(&path)).unwrap();
+        for b in &city.buildings {
+            let one = Candidate {
+                name: &b.id,
+                mesh: &b.mesh,
+                attributes: &b.attributes,
+            };
+            let Ok(found) = &survey_all(&[one], &Limits::default())[0] else {
+                continue;
+            };
+            let told = b.attributes["storeysAboveGround"].as_f64().unwrap();
+            let house = &found.building;
+            let eaves = house.boxes.iter().map(|b| b.height).fold(0.0, f64::max);
+            let storeys = (eaves / house.floor_height).round();
+            assert!(
+                told - storeys == 0.0 || told - storeys == 1.0,
+                "{}: {storeys} of {told}",
+                b.id
+            );
+            houses += 1;
+        }
+    }
+    assert!(houses > 50, "{houses}");
+    println!("{houses} houses");
+}
+
 fn shipped(name: &str) -> Vec<Building> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/building_exteriors");
     building_json::read(&folder.join(name)).unwrap()

@@ -32,8 +32,8 @@
 //!   recorded as not observed ([`edifice_shape::Building::unobserved`]).
 //! - A garage is told by proxy: a flat box below 3.4 m of 12 to 50 square metres on the outside of a house that has
 //!   another box at least twice as large.
-//! - Storeys come from the file's attributes, else from the highest eave over 2.8 m, rounded, at most 3
-//!   where these would be no higher than 4.2 m each.
+//! - Storeys come from the file's attributes; where they would be lower than 2.1 m, one of them is taken to be under the
+//!   pitched roof. Else they come from the highest eave over 2.8 m, rounded, at most 3 where these would be no higher than 4.2 m each.
 //! - Dwellings are told from halls by the file's use where it has one, else by shape ([`Refused::NoDwelling`]).
 
 mod boxes;
@@ -162,6 +162,8 @@ impl Refused {
     }
 }
 
+/// Height below which a storey of those that the file tells is under the roof (m).
+const LOWEST: f64 = 2.1;
 /// Usual and greatest height of a storey where the file does not say how many there are (m), and most storeys.
 const STOREY: f64 = 2.8;
 const TALLEST: f64 = 4.2;
@@ -285,10 +287,15 @@ pub fn survey(
     let roofed = roofs::fitted(&found, &map);
     let mut boxes: Vec<MassBox> = roofed.iter().map(roofs::RoofedBox::mass_box).collect();
     garage(&mut boxes);
+    let highest = boxes.iter().map(|b| b.height).fold(0.0, f64::max);
+    let is_pitched = boxes.iter().any(|b| b.roof.style != RoofStyle::Flat);
     let storeys = match known.storeys {
+        // One is under the roof.
+        Some(storeys) if is_pitched && storeys > 1 && highest < LOWEST * storeys as f64 => {
+            storeys - 1
+        }
         Some(storeys) => storeys,
         None => {
-            let highest = boxes.iter().map(|b| b.height).fold(0.0, f64::max);
             let storeys = ((highest / STOREY).round() as usize).max(1);
             // Three tall storeys rather than four of the usual height.
             match highest <= TALLEST * STOREYS as f64 {
@@ -311,7 +318,6 @@ pub fn survey(
         let millimetres = |v: f64| (v * 1e3).round() / 1e3;
         (b.x, b.y) = (millimetres(b.x - x), millimetres(b.y - y));
     }
-    let highest = boxes.iter().map(|b| b.height).fold(0.0, f64::max);
     let floor_height = (highest / storeys as f64 * 1e3).round() / 1e3;
     let mut building = Building::new(name, "m", floor_height, boxes, Vec::new(), Vec::new())?;
     building.unobserved = vec![Hidden::Porch, Hidden::Facades, Hidden::Special];
