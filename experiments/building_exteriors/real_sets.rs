@@ -37,7 +37,8 @@ fn learnt(
     Ok(sets)
 }
 
-/// The attributes of the houses of a source, each known or not.
+/// The attributes of the houses of a source, each known or not. A kind that all of them have, or none, counts as not known: a model of
+/// this source alone cannot tell anything by it.
 pub(super) fn rows_of(ctx: &mut Context, source: &str) -> Result<Vec<AttributeRow>> {
     let path = ctx.shipped(REAL)?;
     let text = building_csv::read(&path)?;
@@ -53,8 +54,18 @@ pub(super) fn rows_of(ctx: &mut Context, source: &str) -> Result<Vec<AttributeRo
         cells.collect::<std::result::Result<AttributeRow, _>>()
     });
     let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
-    rows.map_err(|e| Error::content(&path, e))
+    let mut rows = rows.map_err(|e| Error::content(&path, e))?;
+    for column in FIRST_KIND..COLUMNS.len() {
+        let all = |value: f64| rows.iter().all(|r| r[column].is_none_or(|v| v == value));
+        if all(0.0) || all(1.0) {
+            rows.iter_mut().for_each(|r| r[column] = None);
+        }
+    }
+    Ok(rows)
 }
+
+/// The first column of kinds of roofs, windows and special elements; numbers stand before it.
+const FIRST_KIND: usize = 39;
 
 fn observe(ctx: &mut Context, source: &str, metric: &str, value: usize) {
     ctx.observe(Row {
