@@ -55,7 +55,8 @@ pub(super) fn rows_of(ctx: &mut Context, source: &str) -> Result<Vec<AttributeRo
     });
     let rows = rows.collect::<std::result::Result<Vec<_>, _>>();
     let mut rows = rows.map_err(|e| Error::content(&path, e))?;
-    for column in FIRST_KIND..COLUMNS.len() {
+    let kinds = GROUPS.iter().filter(|g| g.level == Level::Element);
+    for column in kinds.flat_map(|g| g.first..g.first + g.len) {
         let all = |value: f64| rows.iter().all(|r| r[column].is_none_or(|v| v == value));
         if all(0.0) || all(1.0) {
             rows.iter_mut().for_each(|r| r[column] = None);
@@ -63,9 +64,6 @@ pub(super) fn rows_of(ctx: &mut Context, source: &str) -> Result<Vec<AttributeRo
     }
     Ok(rows)
 }
-
-/// The first column of kinds of roofs, windows and special elements; numbers stand before it.
-const FIRST_KIND: usize = 39;
 
 fn observe(ctx: &mut Context, source: &str, metric: &str, value: usize) {
     ctx.observe(Row {

@@ -21,7 +21,7 @@ pub struct Component {
     pub mesh: TriangleMesh,
     /// Solid share of each column of the box, 0 to 1, 16 x 16 columns.
     pub heights: Vec<f32>,
-    /// Volume in cubic metres.
+    /// Volume in cubic metres, at least 0.
     pub volume: f64,
     /// True if half a turn does not change it.
     pub symmetric: bool,

@@ -153,7 +153,7 @@ impl Component {
             building,
             slab,
             frame,
-            volume: mesh.volume_above(0.0) * frame.volume(),
+            volume: (mesh.volume_above(0.0) * frame.volume()).max(0.0),
             symmetric: upside_down(&heights).is_none(),
             heights,
             mesh,
@@ -189,7 +189,8 @@ fn components_of(mesh: &TriangleMesh, building: usize, bottoms: bool) -> Vec<Com
         let Some(frame) = OrientedBox::around(&part) else {
             continue;
         };
-        let volume = part.volume_above(frame.base[2]);
+        // That of an open mesh may come out below 0.
+        let volume = part.volume_above(frame.base[2]).max(0.0);
         let mesh = in_unit_box(&part, &frame);
         let heights = height_map(&mesh, CELLS, SAMPLES);
         let turned = upside_down(&heights);

@@ -299,11 +299,12 @@ fn corners(
     Ok(out)
 }
 
-/// A text as a number where it is one.
+/// A text as a number where it is one; codes and counts stay whole.
 fn value(text: &str) -> Value {
     let text = text.trim();
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() && !text.starts_with('0') => number.into(),
+    match (text.parse::<i64>(), text.parse::<f64>()) {
+        (Ok(whole), _) if !text.starts_with('0') => whole.into(),
+        (_, Ok(number)) if number.is_finite() && !text.starts_with('0') => number.into(),
         _ => text.into(),
     }
 }

@@ -89,14 +89,12 @@ impl Known {
     }
 }
 
-/// A text, or the texts of a list; codes that a reader took for numbers are whole ones.
+/// A text, or the texts of a list.
 fn text(value: &Value) -> String {
     match value {
         Value::String(s) => s.clone(),
-        Value::Number(n) => match n.as_f64() {
-            Some(code) => code.to_string(),
-            None => n.to_string(),
-        },
+        // Without the ".0" of a column of real numbers.
+        Value::Number(n) => n.as_f64().unwrap_or_default().to_string(),
         Value::Array(list) => list.iter().map(text).collect::<Vec<_>>().join(" "),
         _ => String::new(),
     }
@@ -112,7 +110,7 @@ mod tests {
 
     #[test]
     fn codes_are_read_as_numbers_and_as_texts() {
-        // Readers take the text "411" for the number 411.0.
+        // Files may have codes as texts or as numbers.
         for code in ["411", "412", "1000", "1010"] {
             let number: f64 = code.parse().unwrap();
             for value in [code.into(), number.into(), vec![number].into()] {

@@ -37,8 +37,7 @@ pub fn propose(
     let mut stands = vec![Stands::default(); priced.types.representatives.len()];
     for (component, used) in components.iter().zip(&priced.types.uses) {
         stands[used.kind].count += 1.0;
-        // An open mesh may have a volume below 0.
-        stands[used.kind].volume += component.volume.max(0.0);
+        stands[used.kind].volume += component.volume;
     }
     let mut weights = vec![0.0; rulebook.rules.len()];
     let uses = rulebook.uses.iter().flatten();
