@@ -36,8 +36,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         let made = proceduralize(city, &data::settings(Mode::Best, 4, seed), &unwatched)
             .map_err(Error::method)?;
         let grammar = made.grammar;
-        let derived = grammar.derive().map_err(Error::method)?.city(&grammar);
-        let plan = CityPlan::new(&derived);
+        let plan = CityPlan::new(city);
         let squares = plan.squares(side);
         let Some(old) = plan.measure(&squares) else {
             ctx.note(format!("{name}: no square of {side} m is town."));
@@ -134,7 +133,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         // The made city is drawn where there is no real one.
         let is_drawn = name != data::MADE || cities.len() == 1;
         if let (true, Some(typical), Some(new)) = (is_drawn, typical, shown) {
-            let [from, to] = [cut(&derived, typical), cut(&new, &square)];
+            let [from, to] = [cut(city, typical), cut(&new, &square)];
             for (what, view) in [("plan", View::FigureGround), ("view", View::Oblique)] {
                 // The houses of the made city say nothing in perspective that they do not in the plan.
                 if name == data::MADE && view == View::Oblique {
@@ -163,7 +162,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         }
     }
     ctx.table(&table);
-    ctx.note(format!("New: mean of {seeds} seeds, in the middle of a square that is {RIM} m larger on each side. Old: all squares, overlapping by half, of which nine tenths are within 100 m of a building. Blocks: buildings whose walls are at most 0.5 m apart. Neighbours: the four nearest within 40 m, parallel within 5 degrees. Overlap: share of plan area under another building, also of the old city's own buildings. Pairs copied: share of pairs of buildings within {TOGETHER} m that stand to each other as a pair of the old city of the same types does, to 0.1 m: what is not a seam between two patches."));
+    ctx.note(format!("New: mean of {seeds} seeds, in the middle of a square that is {RIM} m larger on each side. Old: all squares of the city that the grammar is made from, overlapping by half, of which nine tenths are within 100 m of a building. Blocks: buildings whose walls are at most 0.5 m apart. Neighbours: the four nearest within 40 m, parallel within 5 degrees. Overlap: share of plan area under another building. Pairs copied: share of pairs of buildings within {TOGETHER} m that stand to each other as a pair of the old city of the same types does, to 0.1 m: what is not a seam between two patches."));
     Ok(())
 }
 

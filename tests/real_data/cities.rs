@@ -2,6 +2,8 @@
 
 use edifice::grammar::instance::Kept;
 use edifice::io::city::{add_textures, compact, glb, paint_parts, read};
+use edifice::methods::city_proceduralization::morphology::{CityPlan, Morphology, Square};
+use edifice::methods::city_proceduralization::synthesis::{Shape, synthesize};
 use edifice::methods::city_proceduralization::{
     Budget, Precision, Settings, decompose, proceduralize,
 };
@@ -231,4 +233,54 @@ fn derived_chiba_looks_like_chiba() {
     let (off, shuffled) = (off / views, shuffled / views);
     println!("{views} sides: {off:.1} greys of 255 off, {shuffled:.1} to the side before");
     assert!(views > 1500.0 && off < 12.0 && shuffled > 2.0 * off);
+}
+
+/// The limits hold for the mean of eight new squares; four are made here.
+#[test]
+fn new_squares_of_midtown_are_built_as_the_old_ones() {
+    let Some(city) = midtown() else { return };
+    let grammar = proceduralize(&city, &Settings::default(), &unwatched)
+        .unwrap()
+        .grammar;
+    let (side, rim) = (700.0, 100.0);
+    let plan = CityPlan::new(&city);
+    let squares = plan.squares(side);
+    let old = plan.measure(&squares).unwrap();
+    let whole = side + 2.0 * rim;
+    let shape = Shape {
+        rings: vec![vec![[0.0, 0.0], [whole, 0.0], [whole, whole], [0.0, whole]]],
+    };
+    let square = Square {
+        low: [rim; 2],
+        side,
+    };
+    let new: Vec<Morphology> = (1..5)
+        .map(|seed| {
+            let new = synthesize(&grammar, &shape, seed, &unwatched).unwrap();
+            let city = new.derive().unwrap().city(&new);
+            CityPlan::new(&city).measure(&[square]).unwrap()
+        })
+        .collect();
+    let sum = |of: &dyn Fn(&Morphology) -> f64| new.iter().map(of).sum::<f64>();
+    let buildings = sum(&|m| m.buildings as f64);
+    let blocks = sum(&|m| m.buildings as f64 / m.buildings_per_block);
+    let a_building = |of: fn(&Morphology) -> f64| sum(&|m| of(m) * m.buildings as f64) / buildings;
+    let many = old.buildings as f64 / squares.len() as f64;
+    for (what, ratio, most) in [
+        ("buildings a square", buildings / 4.0 / many, 0.1),
+        (
+            "buildings a block",
+            buildings / blocks / old.buildings_per_block,
+            0.1,
+        ),
+        ("attached", a_building(|m| m.attached) / old.attached, 0.05),
+        ("parallel", a_building(|m| m.parallel) / old.parallel, 0.05),
+        ("gaps", a_building(|m| m.gap) / old.gap, 0.1),
+        ("covered", sum(&|m| m.covered) / 4.0 / old.covered, 0.1),
+    ] {
+        println!("{what}: {ratio:.3} of the old city's");
+        assert!((ratio - 1.0).abs() <= most, "{what}: {ratio}");
+    }
+    let overlap = sum(&|m| m.overlap) / 4.0;
+    assert!(overlap <= 0.01, "{overlap}");
 }

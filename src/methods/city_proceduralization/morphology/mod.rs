@@ -70,8 +70,8 @@ pub struct Morphology {
 /// The place of a building among others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbourhood {
-    /// A label that the attached buildings of a block have in common.
-    pub block: usize,
+    /// The number of buildings of its block, itself among them.
+    pub block_size: usize,
     /// True if it is attached to another building.
     pub attached: bool,
     /// Distance of its walls to those of the nearest building of another block, in metres, at most [`LARGEST_GAP`].
@@ -153,9 +153,13 @@ impl CityPlan {
 
     /// The places of the buildings, each with the index in the city; buildings without triangles have none.
     pub fn neighbourhoods(&self) -> impl Iterator<Item = (usize, Neighbourhood)> {
-        self.index.iter().enumerate().map(|(i, &of)| {
+        let mut sizes: FxHashMap<usize, usize> = FxHashMap::default();
+        for &block in &self.block {
+            *sizes.entry(block).or_default() += 1;
+        }
+        self.index.iter().enumerate().map(move |(i, &of)| {
             let neighbourhood = Neighbourhood {
-                block: self.block[i],
+                block_size: sizes[&self.block[i]],
                 attached: self.attached[i],
                 gap: self.gap[i],
             };

@@ -29,6 +29,12 @@ impl Footprint {
         self.inner.len() + self.rim.len()
     }
 
+    /// The mean of its points; the origin if there are none.
+    pub(super) fn middle(&self) -> [f64; 2] {
+        let n = self.points().max(1) as f64;
+        [0, 1].map(|k| self.covered().map(|p| p[k]).sum::<f64>() / n)
+    }
+
     /// The points along the edge of the plan.
     pub(super) fn edge(&self) -> &[[f64; 2]] {
         match self.rim.is_empty() {

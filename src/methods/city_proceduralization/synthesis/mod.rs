@@ -6,9 +6,10 @@
 //!
 //! Whether buildings overlap is read off a grid of 1 m: inner points of a new building must find cells that no other
 //! building covers. A building also brings the open ground that is nearer to it than to any other building of its city: no other may
-//! stand there, so that streets and yards stay open. Real cities have buildings that overlap, too; one that larger ones cover by a
-//! fifth of its plan is not copied, unless it stands within their walls, as a tower on its base does.
+//! stand there, so that streets and yards stay open. Buildings of a grammar overlap a little, since their shapes are those of
+//! types; the few that overlap most with larger ones are not copied, except those within the walls of theirs, as a tower on its base is.
 
+mod amount;
 mod exemplar;
 mod footprint;
 mod groups;

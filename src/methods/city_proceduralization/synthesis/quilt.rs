@@ -3,16 +3,17 @@
 //! As image quilting (Efros and Freeman 2001), with blocks in place of pixels: squares of a lattice that is turned as the city's walls are
 //! are filled one after the other. For each, patches are drawn at random places of the city and turned so that walls and
 //! groups go on in the direction of those that stand around; of those whose plan agrees best with what stands, each is moved to where it agrees
-//! best, and the one is taken after which the new city has most nearly as many buildings, attached ones, blocks and built square metres
-//! as the old, of ground that was seldom copied before. A group of near buildings is taken whole or not at all, but cut between
+//! best, and the one is taken after which the new city has most nearly as many buildings, blocks and built square metres as the old, as
+//! attached, as large, as high and as far apart (`amount`), of ground that was seldom copied before. A group of near buildings is taken whole or not at all, but cut between
 //! buildings at the edge of the shape. Then squares between those of
 //! the lattice, and smaller ones, fill what stayed empty, until the ground is built on as in the old city.
 
 use rand::RngExt;
 
+use super::amount::Amount;
 use super::exemplar::Exemplar;
 use super::footprint::CELL;
-use super::lattice::{Square, inside, lattice, points};
+use super::lattice::{Square, lattice, points};
 use super::occupancy::{Occupancy, Standing};
 use super::patches::{Laid, Patch, Search};
 use super::shape::{Shape, rotated};
@@ -25,12 +26,14 @@ const STEER: f64 = 1.0;
 const REPEAT: f64 = 1.0;
 /// Squares that are filled later, as shares of the first,
 const LATER: [f64; 3] = [1.0, 0.7, 0.5];
-/// by so much of the square at least,
+/// by so much of what the shape has of the square at least,
 const GAIN: f64 = 0.04;
 /// where so much of it is free.
 const ROOM: f64 = 0.1;
+/// Widths of the rim that are tried.
+const RIMS: i32 = 5;
 /// Places at which the density of the old city is measured.
-const MEASURED: usize = 400;
+const MEASURED: usize = 4000;
 
 /// A copy of a building: which, where, and its turn in degrees.
 #[derive(Clone, Copy)]
@@ -40,57 +43,34 @@ pub(super) struct Copy {
     pub(super) turn: f64,
 }
 
-/// Blocks, buildings, attached ones among them, the sum of their gaps, and square metres of plan.
-#[derive(Debug, Clone, Copy, Default)]
-struct Amount([f64; 5]);
-
-/// Index of the square metres in an [`Amount`].
-const AREA: usize = 4;
-
-/// The amount of some buildings of a city.
-fn amount(city: &Exemplar, buildings: impl Iterator<Item = usize>) -> [f64; 5] {
-    let mut blocks: Vec<usize> = Vec::new();
-    let [mut all, mut attached, mut points] = [0, 0, 0];
-    let mut gaps = 0.0;
-    for b in buildings {
-        let source = &city.buildings[b];
-        all += 1;
-        points += source.footprint.points();
-        if let Some(own) = source.neighbourhood {
-            blocks.push(own.block);
-            attached += usize::from(own.attached);
-            gaps += own.gap;
-        }
-    }
-    blocks.sort_unstable();
-    blocks.dedup();
-    let [blocks, all, attached] = [blocks.len(), all, attached].map(|n| n as f64);
-    [blocks, all, attached, gaps, points as f64 * CELL * CELL]
-}
-
-/// The share of a shape's points that are farther from its edge than half the side of a building, the mean over built ground: buildings
-/// are not cut, so that nearer to the edge fewer can stand.
-fn room(city: &Exemplar, shape: &Shape) -> f64 {
+/// The distance in metres from a shape's edge within which nothing is counted: half the side of a building, as of a square, the mean
+/// over built ground; less of it where that would leave less than half of the shape.
+fn rim(city: &Exemplar, shape: &Shape) -> f64 {
     let areas = || city.buildings.iter().map(|b| b.footprint.points() as f64);
     let side = CELL * areas().map(|a| a * a.sqrt()).sum::<f64>() / areas().sum::<f64>();
-    let [mut all, mut far] = [0usize; 2];
-    for square in lattice(city, shape, city.side, [0.0; 2]) {
-        for [x, y] in points(square, square.side, city.axis) {
-            let reach = side / 2.0;
-            let around = [
-                [x - reach, y],
-                [x + reach, y],
-                [x, y - reach],
-                [x, y + reach],
-            ];
-            if shape.contains([x, y]) {
-                all += 1;
-                far += usize::from(around.iter().all(|p| shape.contains(*p)));
-            }
-        }
-    }
-    // A shape too narrow for any building has none; it is filled as far as that goes.
-    far.max(1) as f64 / all.max(1) as f64
+    let squares = lattice(city, shape, city.side, [0.0; 2]);
+    let ground = |rim: f64| {
+        let within = |square: &Square| within(shape, rim, *square, city.axis);
+        squares.iter().map(within).sum::<f64>()
+    };
+    let all = ground(0.0);
+    let rims = (1..RIMS).map(|k| side * 0.5_f64.powi(k));
+    rims.chain([0.0])
+        .find(|rim| 2.0 * ground(*rim) >= all)
+        .unwrap_or(0.0)
+}
+
+/// True if a point lies in the shape and at least so many metres from its edge, along the axes.
+fn is_within(shape: &Shape, rim: f64, [x, y]: [f64; 2]) -> bool {
+    let around = [[x - rim, y], [x + rim, y], [x, y - rim], [x, y + rim]];
+    shape.contains([x, y]) && around.iter().all(|p| shape.contains(*p))
+}
+
+/// The share of a square, turned by so many degrees, that lies in the shape and at least so many metres from its edge.
+fn within(shape: &Shape, rim: f64, square: Square, degrees: f64) -> f64 {
+    let points = points(square, square.side, degrees);
+    let within = points.iter().filter(|p| is_within(shape, rim, **p));
+    within.count() as f64 / points.len() as f64
 }
 
 /// A new city as it grows.
@@ -102,14 +82,14 @@ struct Quilt<'a> {
     laid: Vec<Laid>,
     /// The number of copies of each group.
     copied: Vec<u32>,
-    /// Of a square of the first side, in the old city.
+    /// Of a square of the first side in the old city.
     density: Amount,
-    /// Of the new city so far,
+    /// Nearer to the edge of the shape, in metres, fewer buildings can stand, since none is cut: nothing is counted there ([`rim`]).
+    rim: f64,
+    /// Of the new city so far, within the rim,
     amount: Amount,
     /// on so many squares.
     squares: f64,
-    /// The share of the shape's ground where whole buildings may stand.
-    room: f64,
 }
 
 /// The buildings of a new city inside the shape; when it is stopped, those laid so far.
@@ -155,7 +135,8 @@ impl<'a> Quilt<'a> {
         for _ in 0..MEASURED {
             let place = city.place(std::array::from_fn(|_| rng.random()));
             for group in city.within(place, city.side, city.axis) {
-                density.add(amount(city, city.groups[group].buildings.iter().copied()));
+                let own = city.groups[group].buildings.iter().copied();
+                density = density.plus(&Amount::of(city, own));
             }
         }
         Self {
@@ -165,47 +146,41 @@ impl<'a> Quilt<'a> {
             copies: Vec::new(),
             laid: Vec::new(),
             copied: vec![0; city.groups.len()],
-            density: Amount(density.0.map(|v| v / MEASURED as f64)),
+            density: density.times(1.0 / MEASURED as f64),
+            rim: rim(city, shape),
             amount: Amount::default(),
             squares: 0.0,
-            room: room(city, shape),
         }
     }
 
     /// The share of a square of the lattice that is the ground of the new city.
     fn ground_of(&self, square: Square) -> f64 {
-        self.room * inside(self.shape, square, self.city.axis)
+        within(self.shape, self.rim, square, self.city.axis)
     }
 
     /// True if as much ground is built on as in the old city.
     fn is_dense(&self) -> bool {
-        self.amount.0[AREA] >= self.density.0[AREA] * self.squares
+        self.amount.area >= self.density.area * self.squares
     }
 
-    /// The unlikeness of an amount on so many squares to the old city: the sum of the absolute logarithms of the ratios of area,
-    /// buildings, attached ones and metres of gap a building, and buildings a block.
-    fn unlike(&self, amount: Amount, squares: f64) -> f64 {
-        let [blocks, buildings, attached, gaps, area] = amount.0;
-        let [old_blocks, old_buildings, old_attached, old_gaps, old_area] = self.density.0;
-        let ratio = |new: f64, old: f64| ((new + 1.0) / (old * squares + 1.0)).ln();
-        let grown = ratio(buildings, old_buildings);
-        ratio(area, old_area).abs()
-            + grown.abs()
-            + (ratio(attached, old_attached) - grown).abs()
-            + (ratio(gaps, old_gaps) - grown).abs()
-            + (grown - ratio(blocks, old_blocks)).abs()
+    /// The unlikeness of an amount on so many squares to the old city.
+    fn unlike(&self, amount: &Amount, squares: f64) -> f64 {
+        amount.unlike(&self.density.times(squares))
+    }
+
+    /// The amount of the new city with groups laid beside it.
+    fn with(&self, groups: &[(usize, Vec<Copy>)]) -> Amount {
+        let copies = groups.iter().flat_map(|(_, copies)| copies);
+        self.amount.plus(&self.counted(copies))
     }
 
     /// The patch of a square of the lattice: one that agrees with what stands, and keeps the density of the old city.
     fn first(&self, square: Square, rng: &mut Stream) -> Option<Patch> {
         let squares = self.squares + self.ground_of(square);
         let cost = |patch: &Patch| {
-            let mut amount = self.amount;
             let fitting = self.fitting(square, patch);
-            for group in &fitting {
-                amount.add(self.kept(group));
-            }
-            let unlike = self.unlike(amount, squares) - self.unlike(self.amount, self.squares);
+            let with = self.with(&fitting);
+            let unlike = self.unlike(&with, squares) - self.unlike(&self.amount, self.squares);
             let repeated = self.repeated(square, &fitting);
             Some(patch.mismatch + STEER * unlike * squares + REPEAT * repeated)
         };
@@ -214,22 +189,23 @@ impl<'a> Quilt<'a> {
 
     /// The patch of a square that is partly filled: one that agrees with what stands and covers most; `None` where little is won.
     fn later(&self, square: Square, rng: &mut Stream) -> Option<Patch> {
-        let points = points(square, square.side, self.city.axis);
-        let free = points
-            .iter()
-            .filter(|p| self.ground.free(**p) && self.shape.contains(**p));
-        if (free.count() as f64) < ROOM * points.len() as f64 {
+        let mut points = points(square, square.side, self.city.axis);
+        let all = points.len() as f64;
+        points.retain(|p| self.shape.contains(*p));
+        let inside = points.len() as f64;
+        let free = points.iter().filter(|p| self.ground.free(**p)).count();
+        if (free as f64) < ROOM * inside {
             return None;
         }
+        let ground = square.side * square.side * inside / all;
         let cost = |patch: &Patch| {
             let fitting = self.fitting(square, patch);
-            let mut amount = self.amount;
-            for group in &fitting {
-                amount.add(self.kept(group));
-            }
-            let won = amount.0[AREA] - self.amount.0[AREA];
-            let unlike = self.unlike(amount, self.squares) - self.unlike(self.amount, self.squares);
-            let cost = patch.mismatch - won / (square.side * square.side)
+            // Whole buildings also at the edge.
+            let copies = fitting.iter().flat_map(|(_, copies)| copies);
+            let won = Amount::of(self.city, copies.map(|c| c.source)).area;
+            let with = self.with(&fitting);
+            let unlike = self.unlike(&with, self.squares) - self.unlike(&self.amount, self.squares);
+            let cost = patch.mismatch - won / ground
                 + STEER * unlike * self.squares
                 + REPEAT * self.repeated(square, &fitting);
             (!fitting.is_empty() && cost < -GAIN).then_some(cost)
@@ -278,9 +254,13 @@ impl<'a> Quilt<'a> {
         }
     }
 
-    /// The part of a group that is kept inside the shape.
-    fn kept(&self, (_, copies): &(usize, Vec<Copy>)) -> [f64; 5] {
-        amount(self.city, copies.iter().map(|c| c.source))
+    /// The amount of copies whose middles lie within the rim.
+    fn counted<'c>(&self, copies: impl Iterator<Item = &'c Copy>) -> Amount {
+        let counted = copies.filter(|c| {
+            let [x, y] = rotated(self.city.buildings[c.source].middle, c.turn);
+            is_within(self.shape, self.rim, [c.at[0] + x, c.at[1] + y])
+        });
+        Amount::of(self.city, counted.map(|c| c.source))
     }
 
     /// The share of a square that is covered by groups that were copied before, for each time.
@@ -292,9 +272,9 @@ impl<'a> Quilt<'a> {
     }
 
     fn lay(&mut self, square: Square, patch: Patch) {
-        for group in self.fitting(square, &patch) {
-            self.amount.add(self.kept(&group));
-            let (group, copies) = group;
+        let fitting = self.fitting(square, &patch);
+        self.amount = self.with(&fitting);
+        for (group, copies) in fitting {
             self.copied[group] += 1;
             let group = &self.city.groups[group];
             let [x, y] = rotated([0, 1].map(|k| group.middle[k] - patch.from[k]), patch.turn);
@@ -308,14 +288,6 @@ impl<'a> Quilt<'a> {
                 self.ground.take(&standing);
                 self.copies.push(copy);
             }
-        }
-    }
-}
-
-impl Amount {
-    fn add(&mut self, more: [f64; 5]) {
-        for (sum, v) in self.0.iter_mut().zip(more) {
-            *sum += v;
         }
     }
 }

@@ -13,9 +13,9 @@ const STEEP: f64 = 5.0;
 const NEAR: f64 = 8.0;
 /// No building reaches farther in the plan, in metres.
 const LARGEST: f64 = 5000.0;
-/// A building that larger ones cover by this share of its plan at least is not copied: it overlaps with a neighbour,
-const UNDER: f64 = 0.2;
-/// unless it stands within walls of theirs, as a tower on its base does: by this share at least.
+/// The share of all plans that larger buildings may cover as well; beyond it, buildings that overlap with larger ones are left out.
+const UNDER: f64 = 0.0075;
+/// A building that larger ones cover by this share of its plan at least stands within their walls, as a tower on its base does.
 const WITHIN: f64 = 0.95;
 /// No building stands farther from the origin, in metres: beyond, cells of the plan are not told apart any more.
 const FARTHEST: f64 = 1e9;
@@ -26,6 +26,10 @@ pub(super) struct Source {
     pub(super) placed: Vec<Placement>,
     pub(super) at: [f64; 3],
     pub(super) turn: f64,
+    /// In metres.
+    pub(super) height: f64,
+    /// The middle of its plan, in its frame.
+    pub(super) middle: [f64; 2],
     /// The direction of its walls: the sum of area · exp(4iφ) over walls whose normals have direction φ, so that walls at right angles agree.
     pub(super) walls: [f64; 2],
     pub(super) footprint: Footprint,
@@ -87,13 +91,17 @@ pub(super) fn sources(
                 });
             }
         }
+        let height = mesh.bounds().map_or(0.0, |(low, high)| high[2] - low[2]);
         let (at, turn) = (first.at, placed.first().map_or(0.0, |p| p.turn));
+        let footprint = footprint(&mesh, at, turn);
         out.push(Source {
             placed,
             at,
             turn,
+            height,
             walls: walls(&mesh),
-            footprint: footprint(&mesh, at, turn),
+            middle: footprint.middle(),
+            footprint,
             neighbourhood: None,
         });
         city.buildings.push(CityBuilding {
@@ -101,12 +109,11 @@ pub(super) fn sources(
             ..CityBuilding::default()
         });
     }
-    let under = under_larger(&city);
-    let stands = |share: &f64| !(UNDER..WITHIN).contains(share);
-    let mut each = under.iter();
-    out.retain(|_| each.next().is_some_and(stands));
-    let mut each = under.iter();
-    city.buildings.retain(|_| each.next().is_some_and(stands));
+    let stands = standing(&out, &under_larger(&city));
+    let mut each = stands.iter();
+    out.retain(|_| each.next().is_some_and(|s| *s));
+    let mut each = stands.iter();
+    city.buildings.retain(|_| each.next().is_some_and(|s| *s));
     let plan = CityPlan::new(&city);
     for (i, neighbourhood) in plan.neighbourhoods() {
         out[i].neighbourhood = Some(neighbourhood);
@@ -118,6 +125,30 @@ pub(super) fn sources(
         source.footprint.open = open;
     }
     Ok((out, plan.pairs_within(NEAR)))
+}
+
+/// True for each building that is copied. Those are left out that have most ground under larger ones for their share of the buildings and
+/// of the plan, until such ground is at most [`UNDER`] of the plan.
+fn standing(buildings: &[Source], under: &[f64]) -> Vec<bool> {
+    let area = |i: usize| buildings[i].footprint.points() as f64;
+    let all: f64 = (0..buildings.len()).map(area).sum();
+    let loss = |i: usize| 1.0 / buildings.len() as f64 + area(i) / all;
+    let overlaps = |&i: &usize| under[i] > 0.0 && under[i] < WITHIN;
+    let mut order: Vec<usize> = (0..buildings.len()).filter(overlaps).collect();
+    let worth = |i: usize| under[i] * area(i) / loss(i);
+    order.sort_by(|&a, &b| worth(b).total_cmp(&worth(a)));
+    let mut stands = vec![true; buildings.len()];
+    let mut covered: f64 = order.iter().map(|&i| under[i] * area(i)).sum();
+    let mut left = all;
+    for i in order {
+        if covered <= UNDER * left {
+            break;
+        }
+        covered -= under[i] * area(i);
+        left -= area(i);
+        stands[i] = false;
+    }
+    stands
 }
 
 /// The direction of the walls of a mesh (see [`Source::walls`]).
