@@ -62,8 +62,12 @@ END
 "$edifice" city derive "$folder/b.city-grammar.json" --no-instancing -o "$folder/textured_nodes.glb"
 grep -q '"texture"' "$folder/b.city-grammar.json"
 
+# Compressed, and as tiles.
+"$edifice" city derive datasets/city_proceduralization/town.city-grammar.json --compress -o "$folder/compressed.glb"
+"$edifice" city tiles datasets/city_proceduralization/town.city-grammar.json -o "$folder/tiles"
+"$edifice" city tiles datasets/city_proceduralization/town.city-grammar.json --compress -o "$folder/small_tiles"
 mapfile -t files < <(find "$folder" -name '*.glb' -not -path '*/node_modules/*' | sort)
-[ "${#files[@]}" -ge 17 ] || {
+[ "${#files[@]}" -ge 20 ] || {
     printf 'gltf_validator: only %d files were written\n' "${#files[@]}" >&2
     exit 1
 }

@@ -13,6 +13,7 @@
 //! bytes whatever their number ([`work`]).
 
 mod plan;
+mod scene;
 mod split;
 mod submit;
 mod task;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::plan::Plan;
+use super::scene::Scene;
 use super::tile::Tile;
 use crate::frame::provenance;
 use edifice_base::{Error, Result, Watch, file};
@@ -187,7 +188,10 @@ impl<'a> Place<'a> {
         let grammar = compact::read(&path)?.keeping(Kept::Buildings);
         let grammar = grammar.without_unused_templates();
         let derivation = grammar.derive().map_err(|e| Error::content(&path, e))?;
-        let files = tiles::to_files(&grammar, &derivation, tiles::MOST_INSTANCES);
+        // The index puts it in its place.
+        let mut settings = tiles::Settings::default();
+        settings.on_the_earth = false;
+        let files = tiles::to_files(&grammar, &derivation, &settings);
         let mut files = files.map_err(|e| Error::content(&path, e))?;
         let last = files.pop().map(|f| f.1).unwrap_or_default();
         for (name, bytes) in &files {
@@ -196,46 +200,47 @@ impl<'a> Place<'a> {
         Ok(last)
     }
 
-    /// The tileset over those of all tiles, at the origin of the first.
+    /// The tileset over those of all tiles: on the earth, where all their reference systems are known, else at the origin of the first.
     fn index(&self) -> Result<Vec<u8>> {
-        let (mut origin, mut children, mut error) = (None, Vec::new(), 0.0f64);
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for (t, tile) in self.plan.tiles.iter().enumerate() {
+        let mut scenes = Vec::new();
+        for t in 0..self.plan.tiles.len() {
             let path = self.output(Task::Scene(t));
             let read: Value = serde_json::from_slice(&file::read_bytes(&path)?)
                 .map_err(|e| Error::content(&path, e))?;
-            let numbers = |value: &Value| -> Vec<f64> {
-                let list = value.as_array().into_iter().flatten();
-                list.filter_map(Value::as_f64).collect()
+            let scene = Scene::new(&read);
+            scenes.push(scene.ok_or_else(|| Error::content(&path, "no tileset of this program"))?);
+        }
+        let on_the_earth: Option<Vec<[f64; 16]>> = scenes.iter().map(Scene::on_the_earth).collect();
+        let origin = scenes.first().map_or([0.0; 3], |s| s.origin);
+        let places = on_the_earth.unwrap_or_else(|| {
+            let beside = |s: &Scene| {
+                let [x, y, z] = [0, 1, 2].map(|k| s.origin[k] - origin[k]);
+                [
+                    1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0,
+                ]
             };
-            let own = numbers(&read["asset"]["extras"]["origin"]);
-            let mut cube = numbers(&read["root"]["boundingVolume"]["box"]);
-            let (&[x, y, z], true) = (&own[..], cube.len() == 12) else {
-                return Err(Error::content(&path, "no tileset of this program"));
-            };
-            // A tileset of one tile moves it to its place.
-            let moved = numbers(&read["root"]["transform"]);
-            for (k, moved) in moved.iter().skip(12).take(3).enumerate() {
-                cube[k] += moved;
+            scenes.iter().map(beside).collect()
+        });
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let (mut children, mut error) = (Vec::new(), 0.0f64);
+        for ((tile, scene), place) in self.plan.tiles.iter().zip(&scenes).zip(&places) {
+            for corner in scene.corners() {
+                for k in 0..3 {
+                    let axes = (0..3).map(|axis| place[4 * axis + k] * corner[axis]);
+                    let v = axes.sum::<f64>() + place[12 + k];
+                    low[k] = low[k].min(v);
+                    high[k] = high[k].max(v);
+                }
             }
-            let first = *origin.get_or_insert([x, y, z]);
-            let shift = [x - first[0], y - first[1], z - first[2]];
-            for k in 0..3 {
-                let half: f64 = (0..3).map(|axis| cube[3 + 3 * axis + k].abs()).sum();
-                low[k] = low[k].min(cube[k] + shift[k] - half);
-                high[k] = high[k].max(cube[k] + shift[k] + half);
-            }
-            let own_error = read["geometricError"].as_f64().unwrap_or(0.0);
-            error = error.max(own_error);
+            error = error.max(scene.error);
             children.push(json!({
-                "transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, shift[0], shift[1], shift[2], 1],
-                "boundingVolume": { "box": cube }, "geometricError": own_error, "refine": "REPLACE",
-                "content": { "uri": format!("{}/tileset.json", tile.name) },
+                "transform": place, "boundingVolume": { "box": scene.cube }, "geometricError": scene.error,
+                "refine": "REPLACE", "content": { "uri": format!("{}/tileset.json", tile.name) },
             }));
         }
         let half = [0, 1, 2].map(|k| (high[k] - low[k]) / 2.0);
         let middle = [0, 1, 2].map(|k| (high[k] + low[k]) / 2.0);
-        let error = error.max(half[0] + half[1]);
+        let error = error.max(half.iter().sum());
         let tileset = json!({
             "asset": { "version": "1.1", "extras": { "unit": "m", "up": "z", "origin": origin } },
             "geometricError": error,

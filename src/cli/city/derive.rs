@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice_io::city::{self, cga, cityjson, glb, grammar_file, obj};
+use edifice_io::city::{self, cga, cityjson, glb, glb_compressed, grammar_file, obj};
 
 use super::data;
 use crate::print::{self, Json};
@@ -24,6 +24,9 @@ pub(crate) struct Args {
     /// Write a glTF node for each instance, for viewers without `EXT_mesh_gpu_instancing`.
     #[arg(long)]
     no_instancing: bool,
+    /// Write a small glTF, with `EXT_meshopt_compression` and `KHR_mesh_quantization`: corners are within 5 cm of their places.
+    #[arg(long, conflicts_with = "no_instancing")]
+    compress: bool,
     #[command(flatten)]
     json: Json,
 }
@@ -34,6 +37,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let is_cga = args.output.extension().is_some_and(|e| e == "cga");
     if !is_grammar && !is_cga {
         check_output(&args.output)?;
+    }
+    if args.compress && args.output.extension().is_none_or(|e| e != "glb") {
+        return Err(Error::option("--compress", "is for .glb"));
     }
     let mut grammar = data::grammar(&args.grammar)?;
     if args.rules_only {
@@ -54,7 +60,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
         }
         cga::write(&grammar, &args.output)?;
     } else if !is_grammar {
-        write(&grammar, &derivation, &args.output, !args.no_instancing)?;
+        let style = match (args.no_instancing, args.compress) {
+            (true, _) => Style::Nodes,
+            (_, true) => Style::Compressed,
+            _ => Style::Instanced,
+        };
+        write(&grammar, &derivation, &args.output, style)?;
     }
     args.json.end(&serde_json::json!({
         "file": args.output, "buildings": derivation.buildings.len(), "instances": derivation.instances.len(),
@@ -72,17 +83,31 @@ pub(super) fn check_output(path: &Path) -> Result<()> {
     }
 }
 
+/// The form of a glTF.
+#[derive(Clone, Copy)]
+pub(super) enum Style {
+    /// Instances.
+    Instanced,
+    /// A node for each instance.
+    Nodes,
+    /// Instances and triangles, compressed.
+    Compressed,
+}
+
 /// Writes a derived city; the extension tells the format.
 pub(super) fn write(
     grammar: &InstanceGrammar,
     derivation: &InstanceDerivation,
     path: &Path,
-    instancing: bool,
+    style: Style,
 ) -> Result<()> {
     let bytes = match path.extension().and_then(|e| e.to_str()) {
-        Some("glb") => {
-            glb::to_bytes(grammar, derivation, instancing).map_err(|e| Error::content(path, e))?
+        Some("glb") => match style {
+            Style::Instanced => glb::to_bytes(grammar, derivation, true),
+            Style::Nodes => glb::to_bytes(grammar, derivation, false),
+            Style::Compressed => glb_compressed::to_bytes(grammar, derivation),
         }
+        .map_err(|e| Error::content(path, e))?,
         Some("obj") => {
             let mut city = derivation.city(grammar);
             city::paint_parts(&mut city).map_err(|e| Error::content(path, e))?;

@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let count = derivation.buildings.len();
     match is_grammar {
         true => grammar_file::write(&made, &args.output)?,
-        false => derive::write(&made, &derivation, &args.output, true)?,
+        false => derive::write(&made, &derivation, &args.output, derive::Style::Instanced)?,
     }
     if args.json {
         let summary = serde_json::json!({

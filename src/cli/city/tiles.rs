@@ -19,6 +19,9 @@ pub(crate) struct Args {
     /// Most instances in a tile.
     #[arg(long, default_value_t = tiles::MOST_INSTANCES)]
     instances: usize,
+    /// Write small tiles, with `EXT_meshopt_compression` and `KHR_mesh_quantization`: corners are within 5 cm of their places.
+    #[arg(long)]
+    compress: bool,
     #[command(flatten)]
     json: Json,
 }
@@ -32,7 +35,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let derivation = grammar
         .derive()
         .map_err(|e| Error::content(&args.grammar, e))?;
-    let files = tiles::to_files(&grammar, &derivation, args.instances)
+    let mut settings = tiles::Settings::default();
+    settings.most_instances = args.instances;
+    settings.compress = args.compress;
+    let files = tiles::to_files(&grammar, &derivation, &settings)
         .map_err(|e| Error::content(&args.grammar, e))?;
     std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, "create", e))?;
     // The tileset comes last: it names no tile that is not there.

@@ -8,6 +8,7 @@
 
 use serde_json::{Value, json};
 
+use super::faceted::Faceted;
 use super::pictures::media_type;
 use crate::glb_container::{TooLong, glb_container};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
@@ -26,6 +27,15 @@ pub enum GlbError {
     /// The file would have more bytes than the format can say.
     #[error(transparent)]
     TooLong(#[from] TooLong),
+    /// The codec of numbers or triangles failed.
+    #[error("meshoptimizer: {0}")]
+    Codec(String),
+}
+
+impl From<meshopt::Error> for GlbError {
+    fn from(error: meshopt::Error) -> Self {
+        Self::Codec(error.to_string())
+    }
 }
 
 /// The bytes of a file.
@@ -37,85 +47,78 @@ pub fn to_bytes(
     derivation: &InstanceDerivation,
     instancing: bool,
 ) -> Result<Vec<u8>, GlbError> {
+    write(Glb::default(), grammar, derivation, instancing)
+}
+
+/// The bytes of a tile of 3D Tiles: with instances, and with normals, without which some viewers draw no light; the origin is left to
+/// the tileset.
+///
+/// # Errors
+/// [`GlbError`].
+pub(super) fn tile_to_bytes(
+    grammar: &InstanceGrammar,
+    derivation: &InstanceDerivation,
+) -> Result<Vec<u8>, GlbError> {
+    write(Glb::tile(), grammar, derivation, true)
+}
+
+fn write(
+    mut file: Glb,
+    grammar: &InstanceGrammar,
+    derivation: &InstanceDerivation,
+    instancing: bool,
+) -> Result<Vec<u8>, GlbError> {
+    for (template, instances) in by_template(grammar, derivation) {
+        if file.is_tile && Faceted::new(&template.mesh).mesh.triangles.is_empty() {
+            continue;
+        }
+        match instancing {
+            true => file.instanced(template, &instances),
+            false => {
+                let mesh = file.mesh(template);
+                for i in instances {
+                    let id = i.building.and_then(|b| derivation.buildings.get(b));
+                    file.node(
+                        json!({ "mesh": mesh, "name": id.map_or("", |b| b.0.as_str()),
+                        "translation": translation(i), "rotation": rotation(i), "scale": scale(i) }),
+                    );
+                }
+            }
+        }
+    }
+    let required: &[&str] = match instancing {
+        true => &[INSTANCING],
+        false => &[],
+    };
+    file.finish(grammar, derivation, required)
+}
+
+/// The extension of glTF that draws a mesh at many places.
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Each template that is drawn, with its instances.
+pub(super) fn by_template<'a>(
+    grammar: &'a InstanceGrammar,
+    derivation: &'a InstanceDerivation,
+) -> impl Iterator<Item = (&'a Template, Vec<&'a TemplateInstance>)> {
     let mut by_template: Vec<Vec<&TemplateInstance>> = vec![Vec::new(); grammar.templates.len()];
     for instance in &derivation.instances {
         by_template[instance.template].push(instance);
     }
-    let mut file = Glb::default();
-    let (mut meshes, mut nodes, mut roots) = (Vec::new(), Vec::new(), Vec::new());
-    for (template, instances) in grammar.templates.iter().zip(&by_template) {
-        if instances.is_empty() || template.mesh.triangles.is_empty() {
-            continue;
-        }
-        let mesh = meshes.len();
-        meshes.push(json!({ "name": template.symbol, "primitives": file.primitives(template) }));
-        if instancing {
-            roots.push(nodes.len());
-            nodes.push(
-                json!({ "mesh": mesh, "name": template.symbol, "extensions": {
-                "EXT_mesh_gpu_instancing": { "attributes": file.instances(instances) } } }),
-            );
-        } else {
-            for i in instances {
-                roots.push(nodes.len());
-                let id = i.building.and_then(|b| derivation.buildings.get(b));
-                nodes.push(
-                    json!({ "mesh": mesh, "name": id.map_or("", |b| b.0.as_str()),
-                    "translation": translation(i), "rotation": rotation(i), "scale": scale(i) }),
-                );
-            }
-        }
-    }
-    if meshes.is_empty() {
-        return Err(GlbError::Empty);
-    }
-    let mut extras = json!({ "origin": grammar.origin,
-        "reference_system": grammar.reference_system });
-    if grammar.origin != [0.0; 3] {
-        let [x, y, z] = grammar.origin;
-        extras["origin_node"] = json!(nodes.len());
-        nodes.push(json!({ "name": "origin", "translation": [x, z, -y], "children": roots }));
-        roots = vec![nodes.len() - 1];
-    }
-    let ids: Vec<&str> = derivation.buildings.iter().map(|b| b.0.as_str()).collect();
-    extras["buildings"] = json!(ids);
-    let mut document = json!({
-        "asset": { "version": "2.0", "generator": concat!("edifice ", env!("CARGO_PKG_VERSION")) },
-        "scene": 0,
-        "scenes": [ { "name": grammar.name, "nodes": roots, "extras": extras } ],
-        "nodes": nodes,
-        "meshes": meshes,
-        "materials": file.materials(),
-        "accessors": file.accessors,
-        "bufferViews": file.views,
-        "buffers": [ { "byteLength": file.binary.len() } ],
-    });
-    if !file.images.is_empty() {
-        let count = file.images.len();
-        document["images"] = json!(file.images);
-        document["textures"] = (0..count)
-            .map(|i| json!({ "source": i, "sampler": 0 }))
-            .collect();
-        document["samplers"] = json!([{ "wrapS": CLAMP, "wrapT": CLAMP }]);
-    }
-    if instancing {
-        document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
-        document["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
-    }
-    let text = document.to_string().into_bytes();
-    Ok(glb_container(text, file.binary)?)
+    let all = grammar.templates.iter().zip(by_template);
+    all.filter(|(t, instances)| !instances.is_empty() && !t.mesh.triangles.is_empty())
 }
 
 /// z up to y up.
-fn turned(p: [f64; 3]) -> [f32; 3] {
+pub(super) fn turned(p: [f64; 3]) -> [f32; 3] {
     [p[0] as f32, p[2] as f32, -p[1] as f32]
 }
 
-fn translation(i: &TemplateInstance) -> [f32; 3] {
+pub(super) fn translation(i: &TemplateInstance) -> [f32; 3] {
     turned(i.at)
 }
 
-fn rotation(i: &TemplateInstance) -> [f32; 4] {
+pub(super) fn rotation(i: &TemplateInstance) -> [f32; 4] {
     let (sin, cos) = (i.turn.rem_euclid(360.0).to_radians() / 2.0).sin_cos();
     [0.0, sin as f32, 0.0, cos as f32]
 }
@@ -125,33 +128,126 @@ fn scale(i: &TemplateInstance) -> [f32; 3] {
     [w as f32, h as f32, d as f32]
 }
 
-/// The binary part while it is written.
+/// A file while it is written.
 #[derive(Default)]
-struct Glb {
-    binary: Vec<u8>,
-    views: Vec<Value>,
+pub(super) struct Glb {
+    pub(super) binary: Vec<u8>,
+    /// Buffers beside that of the file's own bytes.
+    pub(super) more_buffers: Vec<Value>,
+    pub(super) views: Vec<Value>,
     accessors: Vec<Value>,
     images: Vec<Value>,
+    pub(super) meshes: Vec<Value>,
+    nodes: Vec<Value>,
+    /// True for the content of a tile.
+    pub(super) is_tile: bool,
 }
 
 /// Component types of the standard.
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
+pub(super) const FLOAT: u32 = 5126;
+pub(super) const UNSIGNED_INT: u32 = 5125;
 /// Targets of buffer views.
-const VERTICES: u32 = 34962;
-const INDICES: u32 = 34963;
+pub(super) const VERTICES: u32 = 34962;
+pub(super) const INDICES: u32 = 34963;
 /// Textures end at their edges.
 const CLAMP: u32 = 33071;
 
 impl Glb {
+    /// The content of a tile, while it is written.
+    pub(super) fn tile() -> Self {
+        Self {
+            is_tile: true,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a node below the origin.
+    pub(super) fn node(&mut self, node: Value) {
+        self.nodes.push(node);
+    }
+
+    /// Adds a mesh and a node that draws it at many places.
+    pub(super) fn instanced(&mut self, template: &Template, instances: &[&TemplateInstance]) {
+        let mesh = self.mesh(template);
+        let attributes = self.instances(instances);
+        self.node(
+            json!({ "mesh": mesh, "name": template.symbol, "extensions": { INSTANCING: { "attributes": attributes } } }),
+        );
+    }
+
+    fn mesh(&mut self, template: &Template) -> usize {
+        let primitives = self.primitives(template);
+        self.meshes
+            .push(json!({ "name": template.symbol, "primitives": primitives }));
+        self.meshes.len() - 1
+    }
+
+    /// The bytes of the file, with the extensions that a reader must know.
+    ///
+    /// # Errors
+    /// [`GlbError`].
+    pub(super) fn finish(
+        mut self,
+        grammar: &InstanceGrammar,
+        derivation: &InstanceDerivation,
+        required: &[&str],
+    ) -> Result<Vec<u8>, GlbError> {
+        if self.meshes.is_empty() {
+            return Err(GlbError::Empty);
+        }
+        let mut roots: Vec<usize> = (0..self.nodes.len()).collect();
+        let mut extras = json!({ "origin": grammar.origin,
+            "reference_system": grammar.reference_system });
+        if grammar.origin != [0.0; 3] && !self.is_tile {
+            let [x, y, z] = grammar.origin;
+            extras["origin_node"] = json!(self.nodes.len());
+            self.nodes
+                .push(json!({ "name": "origin", "translation": [x, z, -y], "children": roots }));
+            roots = vec![self.nodes.len() - 1];
+        }
+        let ids: Vec<&str> = derivation.buildings.iter().map(|b| b.0.as_str()).collect();
+        extras["buildings"] = json!(ids);
+        let materials = self.materials();
+        let mut buffers = vec![json!({ "byteLength": self.binary.len() })];
+        buffers.append(&mut self.more_buffers);
+        let mut document = json!({
+            "asset": { "version": "2.0", "generator": concat!("edifice ", env!("CARGO_PKG_VERSION")) },
+            "scene": 0,
+            "scenes": [ { "name": grammar.name, "nodes": roots, "extras": extras } ],
+            "nodes": self.nodes,
+            "meshes": self.meshes,
+            "materials": materials,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": buffers,
+        });
+        if !self.images.is_empty() {
+            let count = self.images.len();
+            document["images"] = json!(self.images);
+            document["textures"] = (0..count)
+                .map(|i| json!({ "source": i, "sampler": 0 }))
+                .collect();
+            document["samplers"] = json!([{ "wrapS": CLAMP, "wrapT": CLAMP }]);
+        }
+        if !required.is_empty() {
+            document["extensionsUsed"] = json!(required);
+            document["extensionsRequired"] = json!(required);
+        }
+        let text = document.to_string().into_bytes();
+        Ok(glb_container(text, self.binary)?)
+    }
+
     /// A template's primitives. One without a texture is one; with a texture there is one for each side of its box, all over the
     /// same positions, since a corner has other texture coordinates on each.
     fn primitives(&mut self, template: &Template) -> Vec<Value> {
-        let mesh = &template.mesh;
-        let positions = self.positions(mesh);
+        let faceted = self.is_tile.then(|| Faceted::new(&template.mesh));
+        let mesh = faceted.as_ref().map_or(&template.mesh, |f| &f.mesh);
+        let mut attributes = json!({ "POSITION": self.positions(mesh) });
+        if let Some(faceted) = &faceted {
+            attributes["NORMAL"] = json!(self.normals(&faceted.normals));
+        }
         let Some(texture) = &template.texture else {
             let indices = self.indices(mesh.triangles.iter());
-            let attributes = json!({ "POSITION": positions });
             return vec![json!({ "attributes": attributes, "indices": indices, "material": 0 })];
         };
         let view = self.view(texture.iter().copied(), None);
@@ -175,7 +271,8 @@ impl Glb {
             let coordinates = self.accessor(json!({ "bufferView": coordinates,
                 "componentType": FLOAT, "count": mesh.positions.len(), "type": "VEC2" }));
             let indices = self.indices(own.into_iter());
-            let attributes = json!({ "POSITION": positions, "TEXCOORD_0": coordinates });
+            let mut attributes = attributes.clone();
+            attributes["TEXCOORD_0"] = json!(coordinates);
             out.push(json!({ "attributes": attributes, "indices": indices, "material": material }));
         }
         out
@@ -183,10 +280,11 @@ impl Glb {
 
     /// The plain material, then one for each image.
     fn materials(&self) -> Vec<Value> {
-        let plain = json!({ "name": "building", "pbrMetallicRoughness": {
+        // Not all surfaces of a city show their outside; they are walls from both sides.
+        let plain = json!({ "name": "building", "doubleSided": true, "pbrMetallicRoughness": {
             "baseColorFactor": [0.75, 0.73, 0.7, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 } });
         let textured = (0..self.images.len()).map(|i| {
-            json!({ "name": BOX_MAPPED, "pbrMetallicRoughness": {
+            json!({ "name": BOX_MAPPED, "doubleSided": true, "pbrMetallicRoughness": {
                 "baseColorTexture": { "index": i }, "metallicFactor": 0.0, "roughnessFactor": 0.9 } })
         });
         std::iter::once(plain).chain(textured).collect()
@@ -208,6 +306,13 @@ impl Glb {
         );
         self.accessor(json!({ "bufferView": view, "componentType": FLOAT,
             "count": positions.len(), "type": "VEC3", "min": low, "max": high }))
+    }
+
+    fn normals(&mut self, normals: &[[f64; 3]]) -> usize {
+        let numbers = normals.iter().flat_map(|&n| turned(n));
+        let view = self.view(numbers.flat_map(f32::to_le_bytes), Some(VERTICES));
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT,
+            "count": normals.len(), "type": "VEC3" }))
     }
 
     fn indices<'a>(&mut self, triangles: impl Iterator<Item = &'a [u32; 3]>) -> usize {
@@ -252,7 +357,7 @@ impl Glb {
         self.views.len() - 1
     }
 
-    fn accessor(&mut self, accessor: Value) -> usize {
+    pub(super) fn accessor(&mut self, accessor: Value) -> usize {
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }

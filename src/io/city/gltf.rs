@@ -27,8 +27,10 @@ use edifice_base::{Error, Result};
 use edifice_shape::triangles::{City, CityBuilding, Painted};
 
 /// Extensions that may be required.
-const KNOWN: [&str; 4] = [
+const KNOWN: [&str; 6] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
     "KHR_materials_unlit",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
@@ -122,7 +124,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let mut data = Vec::with_capacity(document.buffers.len());
     for (i, buffer) in document.buffers.iter().enumerate() {
         let bytes = gltf_data::buffer(buffer, binary, path)?;
-        if bytes.len() < buffer.byte_length {
+        if bytes.len() < buffer.byte_length && !buffer.is_fallback() {
             let text = format!("{} bytes, not {}", bytes.len(), buffer.byte_length);
             return Err(Error::input(
                 path,
@@ -132,12 +134,8 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         }
         data.push(bytes);
     }
-    let buffers = Buffers {
-        data,
-        views: &document.buffer_views,
-        accessors: &document.accessors,
-    };
     let fault = |(place, error): (String, CityError)| Error::input(path, place, error);
+    let buffers = Buffers::new(data, &document.buffer_views, &document.accessors).map_err(fault)?;
     let Document {
         materials,
         textures,
@@ -255,7 +253,7 @@ impl Reader<'_> {
                         self.place(mesh, &product(&own, &transform), id, &node.extras)?;
                     }
                 }
-                None => self.place(mesh, &own, name, &node.extras)?,
+                None => self.whole(mesh, &own, &name, &node.extras)?,
             }
         }
         let first = self.city.buildings.len();
@@ -279,6 +277,53 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Adds a mesh as a building, or, where its corners say which building they belong to, to those buildings.
+    fn whole(
+        &mut self,
+        mesh: usize,
+        transform: &Matrix,
+        name: &str,
+        extras: &Value,
+    ) -> std::result::Result<(), Fault> {
+        let parts = match self.ids.is_empty() {
+            true => Vec::new(),
+            false => self.meshes.mesh(mesh)?.by_building(),
+        };
+        if parts.is_empty() {
+            return self.place(mesh, transform, name.to_owned(), extras);
+        }
+        for (building, mut part) in parts {
+            self.count(part.triangles.len())?;
+            for p in &mut part.positions {
+                let [x, y, z] = applied(transform, *p);
+                *p = [x, -z, y];
+            }
+            if determinant(transform) < 0.0 {
+                part.flip();
+            }
+            let id = self.ids.get(building);
+            match id.and_then(|id| self.listed.get(id)) {
+                Some(&at) => self.city.buildings[at].mesh.append(&part),
+                None => self.city.buildings.push(CityBuilding {
+                    id: name.to_owned(),
+                    mesh: part,
+                    ..CityBuilding::default()
+                }),
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts triangles.
+    fn count(&mut self, triangles: usize) -> std::result::Result<(), Fault> {
+        self.triangles += triangles;
+        if self.triangles > MOST_TRIANGLES {
+            let text = format!("more than {MOST_TRIANGLES} triangles with all instances");
+            return Err(("scene".into(), CityError::Format(text)));
+        }
+        Ok(())
+    }
+
     /// Adds a mesh to the building of that identifier; one that the scene does not list gets a building of its own.
     fn place(
         &mut self,
@@ -288,16 +333,14 @@ impl Reader<'_> {
         extras: &Value,
     ) -> std::result::Result<(), Fault> {
         let template = mesh;
+        let triangles = self.meshes.mesh(template)?.mesh.triangles.len();
+        self.count(triangles)?;
         let MeshRead {
             mesh,
             paint,
             texture,
+            ..
         } = self.meshes.mesh(template)?;
-        self.triangles += mesh.triangles.len();
-        if self.triangles > MOST_TRIANGLES {
-            let text = format!("more than {MOST_TRIANGLES} triangles with all instances");
-            return Err(("scene".into(), CityError::Format(text)));
-        }
         let (mut moved, mut paint) = (mesh.clone(), paint.clone());
         let painted = paint.iter_mut().flat_map(|p| &mut p.corners);
         for p in moved.positions.iter_mut().chain(painted) {

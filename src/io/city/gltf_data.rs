@@ -4,10 +4,12 @@ use std::path::{Component, Path};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::CityError;
+use super::meshopt_views::Compressed;
 use crate::read_bytes;
 use edifice_base::{Error, Result};
 
@@ -17,6 +19,28 @@ use edifice_base::{Error, Result};
 pub(super) struct Buffer {
     pub byte_length: usize,
     pub uri: Option<String>,
+    #[serde(default)]
+    extensions: BufferExtensions,
+}
+
+#[derive(Default, Deserialize)]
+struct BufferExtensions {
+    #[serde(rename = "EXT_meshopt_compression", alias = "KHR_meshopt_compression")]
+    meshopt: Option<Fallback>,
+}
+
+#[derive(Deserialize)]
+struct Fallback {
+    #[serde(default)]
+    fallback: bool,
+}
+
+impl Buffer {
+    /// True if nothing but compressed views refers to it, so that it need not be there.
+    pub(super) fn is_fallback(&self) -> bool {
+        let meshopt = self.extensions.meshopt.as_ref();
+        meshopt.is_some_and(|m| m.fallback) && self.uri.is_none()
+    }
 }
 
 /// A part of a buffer.
@@ -28,6 +52,14 @@ pub(super) struct View {
     byte_offset: usize,
     byte_length: usize,
     byte_stride: Option<usize>,
+    #[serde(default)]
+    extensions: ViewExtensions,
+}
+
+#[derive(Default, Deserialize)]
+struct ViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression", alias = "KHR_meshopt_compression")]
+    meshopt: Option<Compressed>,
 }
 
 /// Numbers in a view.
@@ -48,16 +80,55 @@ pub(super) struct Accessor {
 
 /// All bytes of a file.
 pub(super) struct Buffers<'a> {
-    pub data: Vec<Vec<u8>>,
-    pub views: &'a [View],
-    pub accessors: &'a [Accessor],
+    data: Vec<Vec<u8>>,
+    /// The bytes of views that were compressed, by index.
+    decoded: FxHashMap<usize, Vec<u8>>,
+    views: &'a [View],
+    accessors: &'a [Accessor],
 }
 
 fn wrong(index: usize, problem: &str) -> CityError {
     CityError::Format(format!("accessors[{index}] {problem}"))
 }
 
-impl Buffers<'_> {
+impl<'a> Buffers<'a> {
+    /// All bytes of a file: its buffers, and its compressed views.
+    ///
+    /// # Errors
+    /// The element that is wrong, and why.
+    pub(super) fn new(
+        data: Vec<Vec<u8>>,
+        views: &'a [View],
+        accessors: &'a [Accessor],
+    ) -> std::result::Result<Self, (String, CityError)> {
+        let mut decoded = FxHashMap::default();
+        for (i, view) in views.iter().enumerate() {
+            let Some(compressed) = &view.extensions.meshopt else {
+                continue;
+            };
+            let fault = |text: String| (format!("bufferViews[{i}]"), CityError::Format(text));
+            let bytes = part(
+                &data,
+                compressed.buffer,
+                compressed.byte_offset,
+                compressed.byte_length,
+            );
+            let bytes = bytes.ok_or_else(|| fault("lies outside its buffer".into()))?;
+            let bytes = compressed.decoded(bytes).map_err(fault)?;
+            if bytes.len() != view.byte_length {
+                let text = format!("{} bytes, not {}", bytes.len(), view.byte_length);
+                return Err(fault(text));
+            }
+            decoded.insert(i, bytes);
+        }
+        Ok(Self {
+            data,
+            decoded,
+            views,
+            accessors,
+        })
+    }
+
     /// All numbers of an accessor of vectors of `width` components.
     pub(super) fn floats(
         &self,
@@ -87,9 +158,11 @@ impl Buffers<'_> {
 
     /// The bytes of a view, if it and its buffer have them.
     pub(super) fn view(&self, index: usize) -> Option<&[u8]> {
+        if let Some(decoded) = self.decoded.get(&index) {
+            return Some(decoded);
+        }
         let view = self.views.get(index)?;
-        let end = view.byte_offset.checked_add(view.byte_length)?;
-        self.data.get(view.buffer)?.get(view.byte_offset..end)
+        part(&self.data, view.buffer, view.byte_offset, view.byte_length)
     }
 
     /// The bytes of each element.
@@ -138,6 +211,11 @@ impl Buffers<'_> {
     }
 }
 
+/// So many bytes of a buffer, if it has them.
+fn part(data: &[Vec<u8>], buffer: usize, from: usize, count: usize) -> Option<&[u8]> {
+    data.get(buffer)?.get(from..from.checked_add(count)?)
+}
+
 fn size_of(component: u32) -> usize {
     match component {
         5120 | 5121 => 1,
@@ -170,6 +248,9 @@ fn reader(component: u32, normalized: bool) -> Option<fn(&[u8]) -> f64> {
 /// The bytes of a buffer: of the file itself, or of its URI.
 pub(super) fn buffer(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u8>> {
     let wrong = |text: String| Error::input(path, "buffers", CityError::Format(text));
+    if buffer.is_fallback() {
+        return Ok(Vec::new());
+    }
     match &buffer.uri {
         Some(uri) => load(uri, path),
         None => {

@@ -1,5 +1,6 @@
 //! Meshes of a glTF file: triangles with what they look like.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
@@ -37,6 +38,43 @@ pub(super) struct MeshRead {
     pub paint: Vec<Painted>,
     /// The picture of its box mapping.
     pub texture: Option<Arc<[u8]>>,
+    /// The index of the building of each corner, where the file says it of all corners.
+    buildings: Vec<f64>,
+}
+
+impl MeshRead {
+    /// The triangles of each building, in the order of their indices; none where the corners do not say theirs.
+    pub(super) fn by_building(&self) -> Vec<(usize, TriangleMesh)> {
+        if self.buildings.len() != self.mesh.positions.len() || !self.paint.is_empty() {
+            return Vec::new();
+        }
+        // A negative number is no index of any.
+        let building = |t: &[u32; 3]| match self.buildings[t[0] as usize] {
+            b if b >= 0.0 => b as usize,
+            _ => usize::MAX,
+        };
+        let mut parts: BTreeMap<usize, Vec<[u32; 3]>> = BTreeMap::new();
+        for t in &self.mesh.triangles {
+            parts.entry(building(t)).or_default().push(*t);
+        }
+        let part = |triangles: Vec<[u32; 3]>| {
+            let mut place = FxHashMap::default();
+            let mut out = TriangleMesh::default();
+            out.triangles = triangles
+                .into_iter()
+                .map(|t| {
+                    t.map(|i| {
+                        *place.entry(i).or_insert_with(|| {
+                            out.positions.push(self.mesh.positions[i as usize]);
+                            out.positions.len() as u32 - 1
+                        })
+                    })
+                })
+                .collect();
+            out
+        };
+        parts.into_iter().map(|(b, t)| (b, part(t))).collect()
+    }
 }
 
 /// The meshes of a file.
@@ -104,6 +142,9 @@ impl<'a> Meshes<'a> {
                 let positions = numbers.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
                 let first = all.mesh.positions.len();
                 all.mesh.positions.extend(positions);
+                if let Some(&accessor) = primitive.attributes.get("_BUILDING") {
+                    all.buildings.extend(self.buffers.floats(accessor, 1)?);
+                }
                 *starts
                     .entry(accessor)
                     .or_insert((first, all.mesh.positions.len() - first))

@@ -3,17 +3,42 @@
 //! The plan is halved along its longer side until a tile has at most the wanted number of instances; a building is in the tile
 //! of its first instance, whole. Each tile's coordinates are relative to its middle, so that 32 bits hold millimetres
 //! in a city of any size. The tileset is in the metres of the grammar's reference system, z up, its origin in the
-//! `extras` of the asset.
+//! `extras` of the asset; where the reference system is known, the root's `transform` puts its middle on the earth ([`super::earth`]).
+//! Contents have normals and no origin.
 
 use serde_json::{Value, json};
 
+use super::earth;
 use super::glb::{self, GlbError};
+use super::glb_compressed;
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 
 /// Instances in a tile at most.
 pub const MOST_INSTANCES: usize = 4000;
 /// Error of a tile that is not drawn, as a share of its extent.
 const ERROR_SHARE: f64 = 0.1;
+
+/// Settings of a tileset.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Instances in a tile at most; a building is not cut.
+    pub most_instances: usize,
+    /// Contents with `EXT_meshopt_compression` and `KHR_mesh_quantization` ([`glb_compressed`]).
+    pub compress: bool,
+    /// The root is put on the earth, where the reference system is known.
+    pub on_the_earth: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            most_instances: MOST_INSTANCES,
+            compress: false,
+            on_the_earth: true,
+        }
+    }
+}
 
 /// The files of a tileset, by name; `tileset.json` is the last.
 ///
@@ -22,7 +47,7 @@ const ERROR_SHARE: f64 = 0.1;
 pub fn to_files(
     grammar: &InstanceGrammar,
     derivation: &InstanceDerivation,
-    most: usize,
+    settings: &Settings,
 ) -> Result<Vec<(String, Vec<u8>)>, GlbError> {
     // Instances that stay together.
     let mut first = rustc_hash::FxHashMap::default();
@@ -45,11 +70,16 @@ pub fn to_files(
         grammar,
         derivation,
         groups,
-        most: most.max(1),
+        settings,
         files: Vec::new(),
     };
     let all: Vec<usize> = (0..tiler.groups.len()).collect();
-    let (root, bounds) = tiler.tile(all)?;
+    let (mut root, bounds) = tiler.tile(all)?;
+    let place = place(grammar, &bounds).filter(|_| settings.on_the_earth);
+    if let Some(transform) = place {
+        root = json!({ "boundingVolume": { "box": box_of(&bounds) }, "transform": transform,
+            "geometricError": extent(&bounds), "refine": "ADD", "children": [root] });
+    }
     let document = json!({
         "asset": { "version": "1.1", "extras": { "name": grammar.name, "unit": "m", "up": "z",
             "origin": grammar.origin, "reference_system": grammar.reference_system } },
@@ -61,13 +91,20 @@ pub fn to_files(
     Ok(files)
 }
 
+/// The place on the earth of a city within bounds, column by column, if its reference system is known.
+fn place(grammar: &InstanceGrammar, (low, high): &Bounds) -> Option<[f64; 16]> {
+    let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0];
+    let system = grammar.reference_system.as_deref()?;
+    earth::place(system, grammar.origin, middle)
+}
+
 type Bounds = ([f64; 3], [f64; 3]);
 
 struct Tiler<'a> {
     grammar: &'a InstanceGrammar,
     derivation: &'a InstanceDerivation,
     groups: Vec<Vec<usize>>,
-    most: usize,
+    settings: &'a Settings,
     files: Vec<(String, Vec<u8>)>,
 }
 
@@ -75,7 +112,7 @@ impl Tiler<'_> {
     /// A tile of groups, with the tiles below it, and its bounds.
     fn tile(&mut self, mut own: Vec<usize>) -> Result<(Value, Bounds), GlbError> {
         let count: usize = own.iter().map(|&g| self.groups[g].len()).sum();
-        if count <= self.most || own.len() == 1 {
+        if count <= self.settings.most_instances.max(1) || own.len() == 1 {
             return self.leaf(&own);
         }
         let place = |g: usize| self.derivation.instances[self.groups[g][0]].at;
@@ -120,7 +157,10 @@ impl Tiler<'_> {
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]];
         let part = self.derivation.part(&members, middle);
         let name = format!("tile-{}.glb", self.files.len());
-        let bytes = glb::to_bytes(self.grammar, &part, true)?;
+        let bytes = match self.settings.compress {
+            true => glb_compressed::tile_to_bytes(self.grammar, &part)?,
+            false => glb::tile_to_bytes(self.grammar, &part)?,
+        };
         self.files.push((name.clone(), bytes));
         let [x, y, z] = middle;
         let local = (

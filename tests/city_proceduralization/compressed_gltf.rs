@@ -1,0 +1,128 @@
+//! Small glTF, with `EXT_meshopt_compression` and `KHR_mesh_quantization`: every building comes back within the limit, damaged
+//! files are refused.
+
+use std::path::Path;
+
+use edifice::grammar::instance::InstanceGrammar;
+use edifice::io::city::{glb, glb_compressed, gltf, grammar_file};
+use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
+use edifice::rng::stream;
+use edifice::shape::triangles::{City, CityBuilding};
+use edifice::unwatched;
+use edifice_generators::city_proceduralization as synthetic;
+use rand::RngExt;
+
+/// Corners are so near to their places, in metres.
+const NEAR: f64 = 0.05;
+
+fn made(blocks: usize, budget: Budget) -> InstanceGrammar {
+    let (city, _) = synthetic::city(blocks, 0.02, 1);
+    let settings = Settings {
+        mode: Mode::Best,
+        budget,
+        ..Settings::default()
+    };
+    proceduralize(&city, &settings, &unwatched).unwrap().grammar
+}
+
+fn shipped() -> InstanceGrammar {
+    let path = "datasets/city_proceduralization/town.city-grammar.json";
+    grammar_file::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// The largest distance of a corner of one building to the nearest corner of the other, both ways.
+fn apart(a: &CityBuilding, b: &CityBuilding) -> f64 {
+    let far = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>();
+    let from = |a: &[[f64; 3]], b: &[[f64; 3]]| {
+        let nearest = |p| b.iter().map(|q| far(p, q)).fold(f64::INFINITY, f64::min);
+        a.iter().map(nearest).fold(0.0, f64::max).sqrt()
+    };
+    let [a, b] = [&a.mesh.positions, &b.mesh.positions];
+    from(a, b).max(from(b, a))
+}
+
+#[test]
+fn every_building_comes_back_within_the_limit() {
+    for grammar in [
+        made(6, Budget::Templates(20)),
+        made(30, Budget::Level(2)),
+        shipped(),
+    ] {
+        let derivation = grammar.derive().unwrap();
+        let bytes = glb_compressed::to_bytes(&grammar, &derivation).unwrap();
+        let plain = glb::to_bytes(&grammar, &derivation, true).unwrap();
+        assert!(bytes.len() < plain.len(), "{} bytes", bytes.len());
+        let city: City = derivation.city(&grammar);
+        let read = gltf::parse(&bytes, Path::new("city.glb")).unwrap();
+        assert_eq!(read.origin, city.origin);
+        assert_eq!(read.buildings.len(), city.buildings.len());
+        for ours in &city.buildings {
+            let theirs = read.buildings.iter().find(|b| b.id == ours.id).unwrap();
+            assert_eq!(ours.mesh.triangles.len(), theirs.mesh.triangles.len());
+            let apart = apart(ours, theirs);
+            assert!(apart <= NEAR * 3.0_f64.sqrt(), "{}: {apart}", ours.id);
+        }
+    }
+}
+
+#[test]
+fn instances_of_many_kinds_are_drawn_out_and_those_of_few_are_not() {
+    for (budget, instanced) in [(Budget::Templates(3), true), (Budget::All, false)] {
+        let grammar = made(6, budget);
+        let mut derivation = grammar.derive().unwrap();
+        if instanced {
+            // A hundred cities, each in the place of the last.
+            let one = derivation.instances.clone();
+            derivation.instances = (0..100).flat_map(|_| one.clone()).collect();
+        }
+        let bytes = glb_compressed::to_bytes(&grammar, &derivation).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        assert_eq!(text.contains("EXT_mesh_gpu_instancing"), instanced);
+    }
+}
+
+#[test]
+fn damaged_files_are_refused_and_none_aborts() {
+    let grammar = made(6, Budget::Templates(20));
+    let bytes = glb_compressed::to_bytes(&grammar, &grammar.derive().unwrap()).unwrap();
+    let mut rng = stream(1, "damaged", 0);
+    let (mut refused, mut read) = (0, 0);
+    for _ in 0..3000 {
+        let mut damaged = bytes.clone();
+        for _ in 0..rng.random_range(1..4) {
+            let at = rng.random_range(0..damaged.len());
+            damaged[at] = rng.random();
+        }
+        match gltf::parse(&damaged, Path::new("city.glb")) {
+            Ok(_) => read += 1,
+            Err(e) => {
+                assert!(!e.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    assert!(
+        refused > 300 && read > 300,
+        "{refused} refused, {read} read"
+    );
+}
+
+#[test]
+fn compression_that_promises_too_much_is_refused() {
+    let grammar = made(6, Budget::Templates(20));
+    let bytes = glb_compressed::to_bytes(&grammar, &grammar.derive().unwrap()).unwrap();
+    let find = |text: &[u8], from: usize| {
+        let places = bytes[from..].windows(text.len());
+        from + places.into_iter().position(|w| w == text).unwrap()
+    };
+    let at = find(b"\"count\":", find(b"\"bufferViews\"", 0)) + 8;
+    let digits = bytes[at..]
+        .iter()
+        .take_while(|b| b.is_ascii_digit())
+        .count();
+    let mut damaged = bytes.clone();
+    damaged[at..at + digits].fill(b'9');
+    let said = gltf::parse(&damaged, Path::new("city.glb")).map(|_| ());
+    let said = said.unwrap_err().to_string();
+    assert!(said.contains("bufferViews["), "{said}");
+}
