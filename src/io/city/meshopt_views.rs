@@ -67,16 +67,20 @@ impl Compressed {
         match (self.mode, stride) {
             (Mode::Attributes, _) => self.attributes(bytes),
             (_, 2 | 4) if self.filter != Filter::None => Err("indices with a filter".into()),
-            (Mode::Triangles, 2) if count.is_multiple_of(3) => Ok(decode_index_buffer::<u16>(bytes, count)
-                .map_err(failed)?
-                .into_iter()
-                .flat_map(u16::to_le_bytes)
-                .collect()),
-            (Mode::Triangles, 4) if count.is_multiple_of(3) => Ok(decode_index_buffer::<u32>(bytes, count)
-                .map_err(failed)?
-                .into_iter()
-                .flat_map(u32::to_le_bytes)
-                .collect()),
+            (Mode::Triangles, 2) if count.is_multiple_of(3) => {
+                Ok(decode_index_buffer::<u16>(bytes, count)
+                    .map_err(failed)?
+                    .into_iter()
+                    .flat_map(u16::to_le_bytes)
+                    .collect())
+            }
+            (Mode::Triangles, 4) if count.is_multiple_of(3) => {
+                Ok(decode_index_buffer::<u32>(bytes, count)
+                    .map_err(failed)?
+                    .into_iter()
+                    .flat_map(u32::to_le_bytes)
+                    .collect())
+            }
             (Mode::Indices, 2) => Ok(decode_index_sequence::<u16>(bytes, count)
                 .map_err(failed)?
                 .into_iter()
@@ -93,7 +97,9 @@ impl Compressed {
 
     fn attributes(&self, bytes: &[u8]) -> Result<Vec<u8>, String> {
         match self.byte_stride / 4 {
-            _ if !self.byte_stride.is_multiple_of(4) => Err("a stride that is no multiple of four".into()),
+            _ if !self.byte_stride.is_multiple_of(4) => {
+                Err("a stride that is no multiple of four".into())
+            }
             1 => self.words::<1>(bytes),
             2 => self.words::<2>(bytes),
             3 => self.words::<3>(bytes),

@@ -27,6 +27,7 @@ pub mod glb;
 pub mod glb_compressed;
 pub mod gltf;
 mod gltf_data;
+mod gltf_instances;
 mod gltf_mesh;
 mod gltf_textures;
 mod gltf_transform;

@@ -7,14 +7,15 @@
 //! its instances are fewer bytes drawn out, they are written into one mesh for each square of the plan (`squares`), each corner
 //! with its `_BUILDING`. Templates with pictures are written as in plain files.
 
+mod shape;
 mod squares;
 mod streams;
 
 use serde_json::json;
 
+use self::shape::Shape;
 use self::squares::Squares;
 use self::streams::Streams;
-use super::faceted::Faceted;
 use super::glb::{Glb, GlbError, INSTANCING, by_template, rotation, turned};
 use super::meshopt_views::EXTENSION;
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, TemplateInstance};
@@ -148,42 +149,6 @@ fn instanced(
 /// z up to y up.
 fn y_up([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x, z, -y]
-}
-
-/// A mesh with its triangles in an order that is good for caches of corners, and its corners in the order of their first use.
-#[derive(Default)]
-struct Shape {
-    mesh: TriangleMesh,
-    /// The normal of each corner, z up; none where there are no normals.
-    normals: Vec<[f64; 3]>,
-}
-
-impl Shape {
-    fn new(mesh: &TriangleMesh, with_normals: bool) -> Self {
-        let faceted = with_normals.then(|| Faceted::new(mesh));
-        let (mesh, normals) = match &faceted {
-            Some(f) => (&f.mesh, f.normals.as_slice()),
-            None => (mesh, [].as_slice()),
-        };
-        let indices: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
-        let indices = meshopt::optimize_vertex_cache(&indices, mesh.positions.len());
-        let mut place = vec![u32::MAX; mesh.positions.len()];
-        let mut out = Self::default();
-        let mut corner = |i: u32| {
-            let own = &mut place[i as usize];
-            if *own == u32::MAX {
-                *own = out.mesh.positions.len() as u32;
-                out.mesh.positions.push(mesh.positions[i as usize]);
-                out.normals.extend(normals.get(i as usize));
-            }
-            *own
-        };
-        let triangles = indices.chunks_exact(3);
-        out.mesh.triangles = triangles
-            .map(|t| [corner(t[0]), corner(t[1]), corner(t[2])])
-            .collect();
-        out
-    }
 }
 
 /// A grid of integers within a box.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::faceted::unit;
-use super::Shape;
+use super::shape::Shape;
 use edifice_grammar::instance::TemplateInstance;
 
 /// Side of a square, in metres: so large that it holds many buildings, and not larger than corners can be told apart in.

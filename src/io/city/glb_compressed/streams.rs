@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::super::glb::{FLOAT, Glb, GlbError, INDICES, UNSIGNED_INT, VERTICES, turned};
 use super::super::meshopt_views::EXTENSION;
-use super::Shape;
+use super::shape::Shape;
 
 /// Component types of the standard.
 const BYTE: u32 = 5120;
@@ -40,11 +40,12 @@ impl<T> Default for Stream<T> {
 }
 
 impl<T> Stream<T> {
-    /// An accessor of more numbers of that kind.
+    /// An accessor of more numbers of that kind, of so many bytes each as they are written.
     fn add(
         &mut self,
         file: &mut Glb,
         items: impl IntoIterator<Item = T>,
+        stride: usize,
         component: u32,
         kind: &str,
     ) -> Value {
@@ -54,7 +55,7 @@ impl<T> Stream<T> {
         });
         let first = self.items.len();
         self.items.extend(items);
-        json!({ "bufferView": view, "byteOffset": first * size_of::<T>(), "componentType": component,
+        json!({ "bufferView": view, "byteOffset": first * stride, "componentType": component,
             "count": self.items.len() - first, "type": kind })
     }
 }
@@ -84,7 +85,7 @@ impl Streams {
         shape: &Shape,
     ) -> Value {
         let items = corners.iter().map(|&[x, y, z]| [x, y, z, 0]);
-        let mut positions = self.corners.add(file, items, UNSIGNED_SHORT, "VEC3");
+        let mut positions = self.corners.add(file, items, 8, UNSIGNED_SHORT, "VEC3");
         let bound = |pick: fn(u16, u16) -> u16, start: u16| -> [u16; 3] {
             std::array::from_fn(|k| corners.iter().map(|p| p[k]).fold(start, pick))
         };
@@ -92,7 +93,7 @@ impl Streams {
         positions["max"] = json!(bound(u16::max, 0));
         let positions = file.accessor(positions);
         let items = shape.mesh.triangles.iter().flatten().copied();
-        let indices = self.indices.add(file, items, UNSIGNED_INT, "SCALAR");
+        let indices = self.indices.add(file, items, 4, UNSIGNED_INT, "SCALAR");
         let indices = file.accessor(indices);
         let mut attributes = json!({ "POSITION": positions });
         if !shape.normals.is_empty() {
@@ -100,9 +101,8 @@ impl Streams {
                 let [x, y, z] = turned(n);
                 [x, y, z, 0.0]
             });
-            let mut normals = self.normals.add(file, items, BYTE, "VEC3");
+            let mut normals = self.normals.add(file, items, 4, BYTE, "VEC3");
             normals["normalized"] = json!(true);
-            normals["byteOffset"] = json!(normals["byteOffset"].as_u64().unwrap_or(0) / 4);
             attributes["NORMAL"] = json!(file.accessor(normals));
         }
         json!({ "attributes": attributes, "indices": indices, "material": 0 })
@@ -113,15 +113,13 @@ impl Streams {
         file: &mut Glb,
         items: impl Iterator<Item = [f32; 3]>,
     ) -> usize {
-        let accessor = self.places.add(file, items, FLOAT, "VEC3");
+        let accessor = self.places.add(file, items, 12, FLOAT, "VEC3");
         file.accessor(accessor)
     }
 
     pub(super) fn turns(&mut self, file: &mut Glb, items: impl Iterator<Item = [f32; 4]>) -> usize {
-        let mut accessor = self.turns.add(file, items, SHORT, "VEC4");
+        let mut accessor = self.turns.add(file, items, 8, SHORT, "VEC4");
         accessor["normalized"] = json!(true);
-        // Quaternions are written in eight bytes.
-        accessor["byteOffset"] = json!(accessor["byteOffset"].as_u64().unwrap_or(0) / 2);
         file.accessor(accessor)
     }
 
@@ -133,7 +131,7 @@ impl Streams {
         largest: f64,
     ) -> usize {
         self.largest = self.largest.max(largest);
-        let accessor = self.sizes.add(file, items, FLOAT, "VEC3");
+        let accessor = self.sizes.add(file, items, 12, FLOAT, "VEC3");
         file.accessor(accessor)
     }
 
@@ -144,7 +142,7 @@ impl Streams {
         items: impl Iterator<Item = Option<usize>>,
     ) -> usize {
         let items = items.map(|b| b.map_or(-1.0, |b| b as f32));
-        let accessor = self.buildings.add(file, items, FLOAT, "SCALAR");
+        let accessor = self.buildings.add(file, items, 4, FLOAT, "SCALAR");
         file.accessor(accessor)
     }
 
