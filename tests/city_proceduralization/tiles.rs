@@ -50,7 +50,10 @@ fn contents_lie_within_their_volumes() {
         let mut open = vec![tileset["root"].clone()];
         let mut seen = 0;
         while let Some(tile) = open.pop() {
-            open.extend(tile["children"].as_array().cloned().unwrap_or_default());
+            let children = tile["children"].as_array().cloned().unwrap_or_default();
+            let error = |t: &Value| t["geometricError"].as_f64().unwrap();
+            assert!(children.iter().all(|c| error(c) <= error(&tile)));
+            open.extend(children);
             let Some(uri) = tile["content"]["uri"].as_str() else {
                 continue;
             };

@@ -22,6 +22,9 @@ pub(crate) struct Args {
     /// Write small tiles, with `EXT_meshopt_compression` and `KHR_mesh_quantization`: corners are within 5 cm of their places.
     #[arg(long)]
     compress: bool,
+    /// Write no coarse level, which draws instances as boxes from afar.
+    #[arg(long)]
+    no_boxes: bool,
     #[command(flatten)]
     json: Json,
 }
@@ -38,6 +41,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let mut settings = tiles::Settings::default();
     settings.most_instances = args.instances;
     settings.compress = args.compress;
+    settings.boxes = !args.no_boxes;
     let files = tiles::to_files(&grammar, &derivation, &settings)
         .map_err(|e| Error::content(&args.grammar, e))?;
     std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, "create", e))?;

@@ -42,6 +42,7 @@ pub mod picture;
 mod pictures;
 pub mod proposal_json;
 mod shells;
+mod tile_boxes;
 pub mod tiles;
 pub mod view_json;
 

@@ -2,7 +2,8 @@
 //!
 //! The plan is halved along its longer side until a tile has at most the wanted number of instances; a building is in the tile
 //! of its first instance, whole. Each tile's coordinates are relative to its middle, so that 32 bits hold millimetres
-//! in a city of any size. The tileset is in the metres of the grammar's reference system, z up, its origin in the
+//! in a city of any size. From afar, up to [`BOXES`] times as many instances are drawn as boxes, in one tile that those of the
+//! templates replace; its geometric error is the largest distance between a box and what it stands for. The tileset is in the metres of the grammar's reference system, z up, its origin in the
 //! `extras` of the asset; where the reference system is known, the root's `transform` puts its middle on the earth ([`super::earth`]).
 //! Contents have normals and no origin.
 
@@ -11,10 +12,13 @@ use serde_json::{Value, json};
 use super::earth;
 use super::glb::{self, GlbError};
 use super::glb_compressed;
+use super::tile_boxes::{box_errors, boxes};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 
 /// Instances in a tile at most.
 pub const MOST_INSTANCES: usize = 4000;
+/// A tile of so many instances at most, times those of a leaf, is drawn from afar by their boxes, in one file.
+pub const BOXES: usize = 16;
 /// Error of a tile that is not drawn, as a share of its extent.
 const ERROR_SHARE: f64 = 0.1;
 
@@ -26,6 +30,8 @@ pub struct Settings {
     pub most_instances: usize,
     /// Contents with `EXT_meshopt_compression` and `KHR_mesh_quantization` ([`glb_compressed`]).
     pub compress: bool,
+    /// A coarse level: each instance as a box ([`BOXES`]).
+    pub boxes: bool,
     /// The root is put on the earth, where the reference system is known.
     pub on_the_earth: bool,
 }
@@ -35,6 +41,7 @@ impl Default for Settings {
         Self {
             most_instances: MOST_INSTANCES,
             compress: false,
+            boxes: true,
             on_the_earth: true,
         }
     }
@@ -71,10 +78,15 @@ pub fn to_files(
         derivation,
         groups,
         settings,
+        box_errors: match settings.boxes {
+            true => box_errors(grammar, derivation),
+            false => Vec::new(),
+        },
+        boxes: boxes(grammar),
         files: Vec::new(),
     };
     let all: Vec<usize> = (0..tiler.groups.len()).collect();
-    let (mut root, bounds) = tiler.tile(all)?;
+    let (mut root, bounds) = tiler.tile(all, settings.boxes)?;
     let place = place(grammar, &bounds).filter(|_| settings.on_the_earth);
     if let Some(transform) = place {
         root = json!({ "boundingVolume": { "box": box_of(&bounds) }, "transform": transform,
@@ -105,16 +117,22 @@ struct Tiler<'a> {
     derivation: &'a InstanceDerivation,
     groups: Vec<Vec<usize>>,
     settings: &'a Settings,
+    /// Of each template, if there is a coarse level.
+    box_errors: Vec<f64>,
+    /// The grammar of the coarse level.
+    boxes: InstanceGrammar,
     files: Vec<(String, Vec<u8>)>,
 }
 
 impl Tiler<'_> {
-    /// A tile of groups, with the tiles below it, and its bounds.
-    fn tile(&mut self, mut own: Vec<usize>) -> Result<(Value, Bounds), GlbError> {
-        let count: usize = own.iter().map(|&g| self.groups[g].len()).sum();
-        if count <= self.settings.most_instances.max(1) || own.len() == 1 {
-            return self.leaf(&own);
+    /// A tile of groups, with the tiles below it, and its bounds. `boxes`: no tile above it is drawn by boxes, but it may be.
+    fn tile(&mut self, mut own: Vec<usize>, boxes: bool) -> Result<(Value, Bounds), GlbError> {
+        let most = self.settings.most_instances.max(1);
+        let members = self.members(&own);
+        if members.len() <= most || own.len() == 1 {
+            return self.leaf(&members);
         }
+        let is_coarse = boxes && members.len() <= BOXES * most;
         let place = |g: usize| self.derivation.instances[self.groups[g][0]].at;
         let span = |k: usize| {
             let values = own.iter().map(|&g| place(g)[k]);
@@ -126,23 +144,67 @@ impl Tiler<'_> {
         let axis = usize::from(span(1) > span(0));
         own.sort_by(|&a, &b| place(a)[axis].total_cmp(&place(b)[axis]).then(a.cmp(&b)));
         let right = own.split_off(own.len() / 2);
-        let (first, a) = self.tile(own)?;
-        let (second, b) = self.tile(right)?;
-        let bounds = (
-            [0, 1, 2].map(|k| a.0[k].min(b.0[k])),
-            [0, 1, 2].map(|k| a.1[k].max(b.1[k])),
-        );
+        let (first, a) = self.tile(own, boxes && !is_coarse)?;
+        let (second, b) = self.tile(right, boxes && !is_coarse)?;
+        let bounds = union(&a, &b);
+        // What is drawn by boxes above is replaced at once.
+        let error = match self.settings.boxes && !boxes || is_coarse {
+            true => self.box_error(&members),
+            false => [&first, &second]
+                .iter()
+                .filter_map(|t| t["geometricError"].as_f64())
+                .fold(ERROR_SHARE * extent(&bounds), f64::max),
+        };
+        let below = json!([first, second]);
+        if is_coarse {
+            let bounds = union(&bounds, &self.bounds(&self.boxes, &members, true));
+            let (mut tile, _) = self.content(&members, &bounds, true)?;
+            // The children stand where they stand; this content is moved.
+            let moved = tile["transform"].take();
+            let back = |k: usize| -moved[12 + k].as_f64().unwrap_or(0.0);
+            let children = json!([{ "boundingVolume": { "box": box_of(&bounds) }, "geometricError": error, "refine": "REPLACE",
+                "transform": shift([back(0), back(1), back(2)]), "children": below }]);
+            tile["transform"] = moved;
+            tile["refine"] = json!("REPLACE");
+            tile["geometricError"] = json!(error);
+            tile["children"] = children;
+            return Ok((tile, bounds));
+        }
+        let refine = if self.settings.boxes && !boxes {
+            "REPLACE"
+        } else {
+            "ADD"
+        };
         let tile = json!({ "boundingVolume": { "box": box_of(&bounds) },
-            "geometricError": ERROR_SHARE * extent(&bounds), "refine": "ADD", "children": [first, second] });
+            "geometricError": error, "refine": refine, "children": below });
         Ok((tile, bounds))
     }
 
-    fn leaf(&mut self, own: &[usize]) -> Result<(Value, Bounds), GlbError> {
-        let members: Vec<usize> = own.iter().flat_map(|&g| self.groups[g].clone()).collect();
+    fn members(&self, own: &[usize]) -> Vec<usize> {
+        own.iter().flat_map(|&g| self.groups[g].clone()).collect()
+    }
+
+    /// The largest distance of the boxes of instances from them.
+    fn box_error(&self, members: &[usize]) -> f64 {
+        let error = |&i: &usize| self.box_errors[self.derivation.instances[i].template];
+        members.iter().map(error).fold(0.0, f64::max)
+    }
+
+    fn leaf(&mut self, members: &[usize]) -> Result<(Value, Bounds), GlbError> {
+        let bounds = self.bounds(self.grammar, members, false);
+        if bounds.0[0] > bounds.1[0] {
+            return Err(GlbError::Empty);
+        }
+        self.content(members, &bounds, false)
+    }
+
+    /// The bounds of instances of a grammar's templates, or of its first.
+    fn bounds(&self, grammar: &InstanceGrammar, members: &[usize], first: bool) -> Bounds {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for &i in &members {
+        for &i in members {
             let instance = &self.derivation.instances[i];
-            for &p in &self.grammar.templates[instance.template].mesh.positions {
+            let template = if first { 0 } else { instance.template };
+            for &p in &grammar.templates[template].mesh.positions {
                 let p = instance.place(p);
                 for k in 0..3 {
                     low[k] = low[k].min(p[k]);
@@ -150,31 +212,52 @@ impl Tiler<'_> {
                 }
             }
         }
-        if low[0] > high[0] {
-            return Err(GlbError::Empty);
-        }
-        let bounds = (low, high);
+        (low, high)
+    }
+
+    /// A tile with content: instances, or their boxes.
+    fn content(
+        &mut self,
+        members: &[usize],
+        bounds: &Bounds,
+        as_boxes: bool,
+    ) -> Result<(Value, Bounds), GlbError> {
+        let (low, high) = *bounds;
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]];
-        let part = self.derivation.part(&members, middle);
+        let mut part = self.derivation.part(members, middle);
+        let mut grammar = self.grammar;
+        if as_boxes {
+            part.instances.iter_mut().for_each(|i| i.template = 0);
+            grammar = &self.boxes;
+        }
         let name = format!("tile-{}.glb", self.files.len());
         let bytes = match self.settings.compress {
-            true => glb_compressed::tile_to_bytes(self.grammar, &part)?,
-            false => glb::tile_to_bytes(self.grammar, &part)?,
+            true => glb_compressed::tile_to_bytes(grammar, &part)?,
+            false => glb::tile_to_bytes(grammar, &part)?,
         };
         self.files.push((name.clone(), bytes));
-        let [x, y, z] = middle;
         let local = (
             [0, 1, 2].map(|k| low[k] - middle[k]),
             [0, 1, 2].map(|k| high[k] - middle[k]),
         );
-        // Column by column.
-        let transform = [
-            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0,
-        ];
         let tile = json!({ "boundingVolume": { "box": box_of(&local) }, "geometricError": 0,
-            "refine": "ADD", "transform": transform, "content": { "uri": name } });
-        Ok((tile, bounds))
+            "refine": "ADD", "transform": shift(middle), "content": { "uri": name } });
+        Ok((tile, *bounds))
     }
+}
+
+fn union(a: &Bounds, b: &Bounds) -> Bounds {
+    (
+        [0, 1, 2].map(|k| a.0[k].min(b.0[k])),
+        [0, 1, 2].map(|k| a.1[k].max(b.1[k])),
+    )
+}
+
+/// The matrix that moves, column by column.
+fn shift([x, y, z]: [f64; 3]) -> [f64; 16] {
+    [
+        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0,
+    ]
 }
 
 /// Centre and half axes.
