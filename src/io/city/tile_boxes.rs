@@ -1,6 +1,6 @@
 //! The coarse level of 3D Tiles: each instance as the box that its template fills, and the distance that this is from the template.
 
-use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template};
+use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
 use edifice_shape::triangles::{SurfaceDistance, TriangleMesh};
 
 /// Points along a side of a box at which distances are measured.
@@ -22,17 +22,27 @@ pub(super) fn boxes(grammar: &InstanceGrammar) -> InstanceGrammar {
     }
 }
 
-/// For each template, in metres: no point of its box is farther from it, and no corner of it from its box, in any of its instances.
-/// Points of the box are [`POINTS`] a side. 0 for templates without instances.
+/// For each instance, in metres: no point of its box is farther from it, and no corner of it from its box. Points of the box are
+/// [`POINTS`] a side.
 pub(super) fn box_errors(grammar: &InstanceGrammar, derivation: &InstanceDerivation) -> Vec<f64> {
-    // A box that is longer along a side has no smaller distances.
+    // A box that is longer along a side has no smaller distances: those of a template are measured in a box as long along each side as
+    // any of its instances, and are less for one that is smaller along all sides.
     let mut largest = vec![[0.0f64; 3]; grammar.templates.len()];
     for instance in &derivation.instances {
         let own = &mut largest[instance.template];
         *own = [0, 1, 2].map(|k| own[k].max(instance.size[k].abs()));
     }
     let all = grammar.templates.iter().zip(&largest);
-    all.map(|(t, size)| box_error(&t.mesh, *size)).collect()
+    let errors: Vec<f64> = all.map(|(t, size)| box_error(&t.mesh, *size)).collect();
+    let error = |i: &TemplateInstance| {
+        let largest = largest[i.template];
+        let share = |k: usize| match largest[k] {
+            0.0 => 0.0,
+            most => i.size[k].abs() / most,
+        };
+        errors[i.template] * (0..3).map(share).fold(0.0, f64::max)
+    };
+    derivation.instances.iter().map(error).collect()
 }
 
 fn box_error(mesh: &TriangleMesh, size: [f64; 3]) -> f64 {

@@ -86,7 +86,7 @@ pub fn to_files(
         files: Vec::new(),
     };
     let all: Vec<usize> = (0..tiler.groups.len()).collect();
-    let (mut root, bounds) = tiler.tile(all, settings.boxes)?;
+    let (mut root, bounds) = tiler.tile(all, None)?;
     let place = place(grammar, &bounds).filter(|_| settings.on_the_earth);
     if let Some(transform) = place {
         root = json!({ "boundingVolume": { "box": box_of(&bounds) }, "transform": transform,
@@ -117,7 +117,7 @@ struct Tiler<'a> {
     derivation: &'a InstanceDerivation,
     groups: Vec<Vec<usize>>,
     settings: &'a Settings,
-    /// Of each template, if there is a coarse level.
+    /// Of each instance, if there is a coarse level.
     box_errors: Vec<f64>,
     /// The grammar of the coarse level.
     boxes: InstanceGrammar,
@@ -125,14 +125,20 @@ struct Tiler<'a> {
 }
 
 impl Tiler<'_> {
-    /// A tile of groups, with the tiles below it, and its bounds. `boxes`: no tile above it is drawn by boxes, but it may be.
-    fn tile(&mut self, mut own: Vec<usize>, boxes: bool) -> Result<(Value, Bounds), GlbError> {
+    /// A tile of groups, with the tiles below it, and its bounds. `coarse`: the error of the tile above it that is drawn by boxes, if
+    /// there is one: what that draws is replaced at once.
+    fn tile(
+        &mut self,
+        mut own: Vec<usize>,
+        coarse: Option<f64>,
+    ) -> Result<(Value, Bounds), GlbError> {
         let most = self.settings.most_instances.max(1);
         let members = self.members(&own);
         if members.len() <= most || own.len() == 1 {
             return self.leaf(&members);
         }
-        let is_coarse = boxes && members.len() <= BOXES * most;
+        let is_coarse = self.settings.boxes && coarse.is_none() && members.len() <= BOXES * most;
+        let error = is_coarse.then(|| self.box_error(&members)).or(coarse);
         let place = |g: usize| self.derivation.instances[self.groups[g][0]].at;
         let span = |k: usize| {
             let values = own.iter().map(|&g| place(g)[k]);
@@ -144,17 +150,15 @@ impl Tiler<'_> {
         let axis = usize::from(span(1) > span(0));
         own.sort_by(|&a, &b| place(a)[axis].total_cmp(&place(b)[axis]).then(a.cmp(&b)));
         let right = own.split_off(own.len() / 2);
-        let (first, a) = self.tile(own, boxes && !is_coarse)?;
-        let (second, b) = self.tile(right, boxes && !is_coarse)?;
+        let (first, a) = self.tile(own, error)?;
+        let (second, b) = self.tile(right, error)?;
         let bounds = union(&a, &b);
-        // What is drawn by boxes above is replaced at once.
-        let error = match self.settings.boxes && !boxes || is_coarse {
-            true => self.box_error(&members),
-            false => [&first, &second]
-                .iter()
-                .filter_map(|t| t["geometricError"].as_f64())
-                .fold(ERROR_SHARE * extent(&bounds), f64::max),
-        };
+        let error = error.unwrap_or_else(|| {
+            let below = [&first, &second].map(|t| t["geometricError"].as_f64().unwrap_or(0.0));
+            below
+                .into_iter()
+                .fold(ERROR_SHARE * extent(&bounds), f64::max)
+        });
         let below = json!([first, second]);
         if is_coarse {
             let bounds = union(&bounds, &self.bounds(&self.boxes, &members, true));
@@ -170,10 +174,9 @@ impl Tiler<'_> {
             tile["children"] = children;
             return Ok((tile, bounds));
         }
-        let refine = if self.settings.boxes && !boxes {
-            "REPLACE"
-        } else {
-            "ADD"
+        let refine = match coarse {
+            Some(_) => "REPLACE",
+            None => "ADD",
         };
         let tile = json!({ "boundingVolume": { "box": box_of(&bounds) },
             "geometricError": error, "refine": refine, "children": below });
@@ -186,8 +189,10 @@ impl Tiler<'_> {
 
     /// The largest distance of the boxes of instances from them.
     fn box_error(&self, members: &[usize]) -> f64 {
-        let error = |&i: &usize| self.box_errors[self.derivation.instances[i].template];
-        members.iter().map(error).fold(0.0, f64::max)
+        members
+            .iter()
+            .map(|&i| self.box_errors[i])
+            .fold(0.0, f64::max)
     }
 
     fn leaf(&mut self, members: &[usize]) -> Result<(Value, Bounds), GlbError> {
