@@ -18,5 +18,6 @@ mod invariance;
 mod new_cities;
 mod parametric;
 mod photographs;
+mod systems;
 mod textures;
 mod tiles;

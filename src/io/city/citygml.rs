@@ -28,6 +28,7 @@ use self::element::Element;
 pub use self::error::CityGmlError;
 use self::error::{DEEPEST, Dropped};
 use self::system::System;
+use super::units::in_metres;
 use crate::file_stem;
 use edifice_base::{Error, Result};
 use edifice_shape::triangles::City;
@@ -240,6 +241,7 @@ impl Model {
             let note = "degrees were projected to metres around the first corner".to_owned();
             self.city.notes.push(note);
         }
+        in_metres(&mut self.city);
         self.city
     }
 }

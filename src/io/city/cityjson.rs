@@ -1,24 +1,25 @@
 //! Cities as CityJSON 1.0 to 2.0 (`.city.json`) and CityJSONSeq (`.city.jsonl`): z up, metres.
 //!
-//! A first-level city object with its parts is a building. Read are `MultiSurface`, `CompositeSurface`, `Solid`,
-//! `MultiSolid` and `CompositeSolid` of the highest level of detail; polygons with holes are triangulated. Where
+//! A building, a first-level city object, is read with its parts; objects that are no buildings are counted in the city's notes. Read are `MultiSurface`, `CompositeSurface`, `Solid`,
+//! `MultiSolid` and `CompositeSolid` of the highest level of detail, and instances of geometry templates; polygons with holes are triangulated. Where
 //! surfaces are named (semantics) and windows among them, they are painted: openings dark, all else light.
 //! Written is CityJSON 2.0 with a `MultiSurface` of triangles for each building.
 
+use std::borrow::Cow;
 use std::path::Path;
-use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::CityError;
+use super::cityjson_drawing::Drawing;
+use super::earth::IN_METRES;
+use super::units::in_metres;
 use crate::json::parse_json;
 use crate::read_bytes;
 use edifice_base::{Error, Result};
-use edifice_shape::triangles::{
-    City, CityBuilding, Painted, Surface, TriangleMesh, polygon_triangles,
-};
+use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 #[derive(Deserialize)]
 struct Document {
@@ -31,6 +32,17 @@ struct Document {
     #[serde(rename = "CityObjects", default)]
     objects: Map<String, Value>,
     #[serde(default)]
+    vertices: Vec<[f64; 3]>,
+    #[serde(rename = "geometry-templates", default)]
+    templates: Option<Templates>,
+}
+
+/// Geometries that instances refer to, in coordinates of their own.
+#[derive(Default, Deserialize)]
+struct Templates {
+    #[serde(default)]
+    templates: Vec<Value>,
+    #[serde(rename = "vertices-templates", default)]
     vertices: Vec<[f64; 3]>,
 }
 
@@ -67,6 +79,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         scale: [1.0; 3],
         translate: [0.0; 3],
     };
+    let (mut templates, mut others) = (Templates::default(), 0);
     for (line, part) in parts.into_iter().enumerate() {
         let place = |inner: &str| match sequence {
             true => format!("line {}, {inner}", line + 1),
@@ -90,22 +103,47 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         }
         let scaled = |v: &[f64; 3]| [0, 1, 2].map(|k| v[k] * transform.scale[k]);
         let vertices: Vec<[f64; 3]> = document.vertices.iter().map(scaled).collect();
-        read_objects(&document.objects, &vertices, &mut city).map_err(|(id, error)| {
+        // Those of the first line hold for all features.
+        templates = document.templates.unwrap_or(templates);
+        let objects = Objects {
+            objects: &document.objects,
+            vertices: &vertices,
+            templates: &templates,
+        };
+        others += objects.read(&mut city).map_err(|(id, error)| {
             Error::input(path, place(&format!("CityObjects.{id}")), error)
         })?;
     }
+    if others > 0 {
+        let note = format!("left out: {others} city objects that are no buildings");
+        city.notes.push(note);
+    }
+    in_metres(&mut city);
     Ok(city)
 }
 
-fn read_objects(
-    objects: &Map<String, Value>,
-    vertices: &[[f64; 3]],
-    city: &mut City,
-) -> std::result::Result<(), (String, CityError)> {
-    let mut index: FxHashMap<&str, usize> = FxHashMap::default();
-    for (id, object) in objects {
-        if first_parent(object).is_none() {
-            index.insert(id, city.buildings.len());
+/// The city objects of a document.
+struct Objects<'a> {
+    objects: &'a Map<String, Value>,
+    vertices: &'a [[f64; 3]],
+    templates: &'a Templates,
+}
+
+impl Objects<'_> {
+    /// Adds the buildings; the number of first-level objects that are none.
+    fn read(&self, city: &mut City) -> std::result::Result<usize, (String, CityError)> {
+        let mut index: FxHashMap<&str, Option<usize>> = FxHashMap::default();
+        let mut others = 0;
+        for (id, object) in self.objects {
+            if first_parent(object).is_some() {
+                continue;
+            }
+            if !is_building(object) {
+                others += 1;
+                index.insert(id, None);
+                continue;
+            }
+            index.insert(id, Some(city.buildings.len()));
             let attributes = object.get("attributes").and_then(Value::as_object);
             city.buildings.push(CityBuilding {
                 id: id.clone(),
@@ -114,138 +152,112 @@ fn read_objects(
                 ..CityBuilding::default()
             });
         }
-    }
-    for (id, object) in objects {
-        // Parts may have parts; a circle of parents ends after as many steps as there are objects.
-        let mut root = id.as_str();
-        for _ in 0..objects.len() {
-            match objects.get(root).and_then(first_parent) {
-                Some(parent) => root = parent,
-                None => break,
+        for (id, object) in self.objects {
+            // Parts may have parts; a circle of parents ends after as many steps as there are objects.
+            let mut root = id.as_str();
+            for _ in 0..self.objects.len() {
+                match self.objects.get(root).and_then(first_parent) {
+                    Some(parent) => root = parent,
+                    None => break,
+                }
             }
+            let Some(&building) = index.get(root) else {
+                let text = format!("its parent {root:?} does not exist");
+                return Err((id.clone(), CityError::Format(text)));
+            };
+            let (Some(building), Some(geometry)) = (building, self.highest(object)) else {
+                continue;
+            };
+            let drawing = self.drawn(geometry).map_err(|e| (id.clone(), e))?;
+            let building = &mut city.buildings[building];
+            building.mesh.append(&drawing.mesh.welded(1e-6));
+            building.paint.extend(drawing.paint);
         }
-        let Some(&building) = index.get(root) else {
-            let text = format!("its parent {root:?} does not exist");
-            return Err((id.clone(), CityError::Format(text)));
-        };
-        let mut drawing = Drawing {
-            vertices,
-            kinds: Vec::new(),
-            mesh: TriangleMesh::default(),
-            paint: Vec::new(),
-        };
-        if let Some(geometry) = highest(object) {
-            let boundaries = geometry.get("boundaries").unwrap_or(&Value::Null);
-            drawing.kinds = greys(geometry);
-            let values = geometry.pointer("/semantics/values");
-            let drawn = drawing.surfaces(boundaries, values);
-            drawn.map_err(|e| (id.clone(), e))?;
-        }
-        let building = &mut city.buildings[building];
-        building.mesh.append(&drawing.mesh.welded(1e-6));
-        building.paint.extend(drawing.paint);
+        city.buildings.retain(|b| !b.mesh.triangles.is_empty());
+        Ok(others)
     }
-    city.buildings.retain(|b| !b.mesh.triangles.is_empty());
-    Ok(())
+
+    /// The geometry with surfaces of the highest level of detail.
+    fn highest<'a>(&'a self, object: &'a Value) -> Option<&'a Value> {
+        let lod = |g: &&Value| {
+            let geometry = self.template(g).unwrap_or(g);
+            match geometry.get("lod") {
+                Some(Value::String(text)) => text.parse().unwrap_or(0.0),
+                Some(number) => number.as_f64().unwrap_or(0.0),
+                None => 0.0,
+            }
+        };
+        let solid = |g: &&Value| {
+            let kind = g.get("type").and_then(Value::as_str).unwrap_or_default();
+            kind.ends_with("Surface") || kind.ends_with("Solid") || kind == INSTANCE
+        };
+        let list = object.get("geometry")?.as_array()?;
+        list.iter()
+            .filter(solid)
+            .max_by(|a, b| lod(a).total_cmp(&lod(b)))
+    }
+
+    /// The template of a geometry that is an instance.
+    fn template(&self, geometry: &Value) -> Option<&Value> {
+        let index = geometry.get("template")?.as_u64()?;
+        self.templates.templates.get(usize::try_from(index).ok()?)
+    }
+
+    fn drawn(&self, geometry: &Value) -> std::result::Result<Drawing<'_>, CityError> {
+        let is_instance = geometry.get("type").and_then(Value::as_str) == Some(INSTANCE);
+        let (shape, vertices) = match is_instance {
+            true => self.instance(geometry)?,
+            false => (geometry, Cow::Borrowed(self.vertices)),
+        };
+        let mut drawing = Drawing::new(shape, vertices);
+        let boundaries = shape.get("boundaries").unwrap_or(&Value::Null);
+        drawing.surfaces(boundaries, shape.pointer("/semantics/values"))?;
+        Ok(drawing)
+    }
+
+    /// The template of an instance, and the vertices of templates where the instance puts them: turned, stretched and moved by its matrix,
+    /// then moved to its point.
+    fn instance<'a>(&'a self, geometry: &Value) -> std::result::Result<Instance<'a>, CityError> {
+        let wrong = |what: &str| CityError::Format(format!("a geometry instance {what}"));
+        let template = self
+            .template(geometry)
+            .ok_or_else(|| wrong("without a template"))?;
+        let matrix: [f64; 16] = geometry
+            .get("transformationMatrix")
+            .and_then(|m| serde_json::from_value(m.clone()).ok())
+            .ok_or_else(|| wrong("without a matrix of 16 numbers"))?;
+        let index = geometry.pointer("/boundaries/0").and_then(Value::as_u64);
+        let index = index.ok_or_else(|| wrong("without a point"))?;
+        let count = self.vertices.len();
+        let at = usize::try_from(index)
+            .ok()
+            .and_then(|i| self.vertices.get(i));
+        let at = at.ok_or(CityError::Dangling { index, count })?;
+        let moved = |p: &[f64; 3]| {
+            [0, 1, 2].map(|k| {
+                let row = &matrix[4 * k..4 * k + 4];
+                row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] + at[k]
+            })
+        };
+        let vertices = self.templates.vertices.iter().map(moved).collect();
+        Ok((template, Cow::Owned(vertices)))
+    }
+}
+
+/// A template, and the vertices of templates in their places.
+type Instance<'a> = (&'a Value, Cow<'a, [[f64; 3]]>);
+
+/// The type of geometries that refer to a template.
+const INSTANCE: &str = "GeometryInstance";
+
+/// True for a building; roads, terrain, plants and the like are none. An object without a type is taken for one.
+fn is_building(object: &Value) -> bool {
+    let kind = object.get("type").and_then(Value::as_str);
+    kind.is_none_or(|kind| kind.contains("Building"))
 }
 
 fn first_parent(object: &Value) -> Option<&str> {
     object.get("parents")?.get(0)?.as_str()
-}
-
-/// The geometry with surfaces of the highest level of detail.
-fn highest(object: &Value) -> Option<&Value> {
-    let lod = |g: &&Value| match g.get("lod") {
-        Some(Value::String(text)) => text.parse().unwrap_or(0.0),
-        Some(number) => number.as_f64().unwrap_or(0.0),
-        None => 0.0,
-    };
-    let solid = |g: &&Value| {
-        let kind = g.get("type").and_then(Value::as_str).unwrap_or_default();
-        kind.ends_with("Surface") || kind.ends_with("Solid")
-    };
-    let list = object.get("geometry")?.as_array()?;
-    list.iter()
-        .filter(solid)
-        .max_by(|a, b| lod(a).total_cmp(&lod(b)))
-}
-
-/// Greys of openings and of everything else.
-const OPENING: u8 = 40;
-const WALL: u8 = 220;
-
-/// The grey of each kind of surface of a geometry, if windows are among them: what a drawing of the building would show.
-fn greys(geometry: &Value) -> Vec<Arc<Surface>> {
-    let kinds = geometry.pointer("/semantics/surfaces");
-    let kinds = kinds.and_then(Value::as_array).into_iter().flatten();
-    let names: Vec<&str> = kinds
-        .map(|k| k.get("type").and_then(Value::as_str).unwrap_or_default())
-        .collect();
-    if !names.contains(&"Window") {
-        return Vec::new();
-    }
-    let grey = |name: &&str| match *name {
-        "Window" | "Door" => OPENING,
-        _ => WALL,
-    };
-    let surface = |name| Arc::new(Surface::Plain([grey(name); 3]));
-    names.iter().map(surface).collect()
-}
-
-/// An object as it is drawn.
-struct Drawing<'a> {
-    vertices: &'a [[f64; 3]],
-    /// The paint of the surfaces of each kind.
-    kinds: Vec<Arc<Surface>>,
-    mesh: TriangleMesh,
-    paint: Vec<Painted>,
-}
-
-impl Drawing<'_> {
-    /// Surfaces at any depth of nesting: a surface is a list of rings, a ring a list of indices. `kinds` are nested in the
-    /// same way, down to one for each surface.
-    fn surfaces(
-        &mut self,
-        value: &Value,
-        kinds: Option<&Value>,
-    ) -> std::result::Result<(), CityError> {
-        let wrong = || CityError::Format("boundaries are not nested lists of indices".to_owned());
-        let list = value.as_array().ok_or_else(wrong)?;
-        let is_surface = list
-            .first()
-            .and_then(Value::as_array)
-            .and_then(|ring| ring.first())
-            .is_some_and(Value::is_number);
-        if !is_surface {
-            let own = |i: usize| kinds.and_then(|k| k.get(i));
-            let mut inner = list.iter().enumerate();
-            return inner.try_for_each(|(i, inner)| self.surfaces(inner, own(i)));
-        }
-        let mut rings: Vec<Vec<[f64; 3]>> = Vec::new();
-        for ring in list {
-            let mut corners = Vec::new();
-            for index in ring.as_array().ok_or_else(wrong)? {
-                let index = index.as_u64().ok_or_else(wrong)?;
-                let count = self.vertices.len();
-                let vertex = usize::try_from(index).ok();
-                let vertex = vertex.and_then(|i| self.vertices.get(i));
-                corners.push(*vertex.ok_or(CityError::Dangling { index, count })?);
-            }
-            rings.push(corners);
-        }
-        let kind = kinds.and_then(Value::as_u64);
-        let kind = kind.and_then(|k| usize::try_from(k).ok());
-        let surface = kind.and_then(|k| self.kinds.get(k)).cloned();
-        for corners in polygon_triangles(&rings) {
-            self.mesh.push(corners);
-            self.paint.extend(surface.clone().map(|surface| Painted {
-                corners,
-                uv: [[0.0; 2]; 3],
-                surface,
-            }));
-        }
-        Ok(())
-    }
 }
 
 /// Millimetres: coordinates are written as integers.
@@ -292,6 +304,10 @@ const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
 /// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard
 /// allows no other names: such are left out.
 pub(crate) fn standard_name(system: &str) -> Option<String> {
+    // No system has these coordinates any more.
+    if system.ends_with(IN_METRES) {
+        return None;
+    }
     if let Some(rest) = system.strip_prefix("http://www.opengis.net/def/crs/") {
         return Some(format!("{OPEN_GIS}{rest}"));
     }

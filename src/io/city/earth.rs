@@ -15,10 +15,15 @@ const REACH: f64 = 100.0;
 /// in metres, less `origin`, z up, become earth-centred ones. It is exact at `middle`, a point of the city; at a distance d from there, it
 /// is off by d² / 12,700 km, since the earth is round. Heights are taken for heights above the ellipsoid.
 pub fn place(system: &str, origin: [f64; 3], middle: [f64; 3]) -> Option<[f64; 16]> {
-    let from = projection(system)?;
+    let from = projection(system.strip_suffix(IN_METRES).unwrap_or(system))?;
+    let metres = from.to_meter();
+    if (metres - 1.0).abs() > 1e-9 && !system.ends_with(IN_METRES) {
+        return None;
+    }
     let to = Proj::from_proj_string("+proj=longlat +datum=WGS84 +no_defs").ok()?;
     let at = |x: f64, y: f64| -> Option<[f64; 3]> {
-        let mut point = (origin[0] + middle[0] + x, origin[1] + middle[1] + y, 0.0);
+        let [x, y] = [origin[0] + middle[0] + x, origin[1] + middle[1] + y].map(|v| v / metres);
+        let mut point = (x, y, 0.0);
         transform(&from, &to, &mut point).ok()?;
         let place = earth_centred(point.0, point.1, origin[2] + middle[2]);
         place.iter().all(|v| v.is_finite()).then_some(place)
@@ -51,14 +56,21 @@ pub fn place(system: &str, origin: [f64; 3], middle: [f64; 3]) -> Option<[f64; 1
     ])
 }
 
-/// The projection of a reference system whose unit is the metre.
+/// What follows the name of a reference system whose coordinates were feet, or others, and have been made metres.
+pub(super) const IN_METRES: &str = " in metres";
+
+/// Metres in a unit of a projected reference system, if it is known.
+pub(super) fn unit_of(system: &str) -> Option<f64> {
+    Some(projection(system)?.to_meter())
+}
+
+/// The projection of a reference system, if it is known and is one.
 fn projection(system: &str) -> Option<Proj> {
     let code = u16::try_from(epsg(system)?).ok()?;
     let plan = HORIZONTAL.iter().find(|(whole, _)| *whole == code);
     let definition = crs_definitions::from_code(plan.map_or(code, |p| p.1))?;
     let projection = Proj::from_proj_string(definition.proj4).ok()?;
-    let metres = (projection.to_meter() - 1.0).abs() < 1e-9;
-    (metres && !projection.is_latlong() && !projection.is_geocent()).then_some(projection)
+    (!projection.is_latlong() && !projection.is_geocent()).then_some(projection)
 }
 
 /// Compound systems, and the horizontal ones in them.
@@ -136,6 +148,8 @@ mod tests {
                 [9.0, 52.0],
             ),
             ("EPSG:2154", [700_000.0, 6_600_000.0], [3.0, 46.5]),
+            // 984,250 survey feet east of the origin, which is on the meridian.
+            ("EPSG:2263 in metres", [300_000.0, 0.0], [-74.0, 40.166_667]),
         ] {
             let m = place(system, [at[0], at[1], 0.0], [0.0; 3]).unwrap();
             let [x, y, height] = geodetic(applied(&m, [0.0; 3]));

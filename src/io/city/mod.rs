@@ -19,6 +19,7 @@ mod archive;
 pub mod cga;
 pub mod citygml;
 pub mod cityjson;
+mod cityjson_drawing;
 pub mod compact;
 pub mod earth;
 mod faceted;
@@ -44,6 +45,7 @@ pub mod proposal_json;
 mod shells;
 mod tile_boxes;
 pub mod tiles;
+mod units;
 pub mod view_json;
 
 pub use pictures::{add_textures, paint_parts};
