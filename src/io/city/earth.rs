@@ -4,6 +4,8 @@ use proj4rs::Proj;
 use proj4rs::transform::transform;
 
 use super::citygml::system::epsg;
+use super::faceted::unit;
+use edifice_shape::vec3::{cross, sub};
 
 /// Semi-major axis of the ellipsoid of WGS 84, in metres, and its flattening.
 const AXIS: f64 = 6_378_137.0;
@@ -30,9 +32,9 @@ pub fn place(system: &str, origin: [f64; 3], middle: [f64; 3]) -> Option<[f64; 1
     };
     let here = at(0.0, 0.0)?;
     let (a, b) = (at(-REACH, 0.0)?, at(REACH, 0.0)?);
-    let east = unit([0, 1, 2].map(|k| b[k] - a[k]))?;
+    let east = unit(sub(b, a))?;
     let (c, d) = (at(0.0, -REACH)?, at(0.0, REACH)?);
-    let up = unit(cross(east, [0, 1, 2].map(|k| d[k] - c[k])))?;
+    let up = unit(cross(east, sub(d, c)))?;
     let north = cross(up, east);
     let moved = |k: usize| here[k] - east[k] * middle[0] - north[k] * middle[1] - up[k] * middle[2];
     let [e, n, u] = [east, north, up];
@@ -56,7 +58,7 @@ pub fn place(system: &str, origin: [f64; 3], middle: [f64; 3]) -> Option<[f64; 1
     ])
 }
 
-/// What follows the name of a reference system whose coordinates were feet, or others, and have been made metres.
+/// The ending of the name of a reference system whose coordinates were feet, or others, and have been made metres.
 pub(super) const IN_METRES: &str = " in metres";
 
 /// Metres in a unit of a projected reference system, if it is known.
@@ -93,19 +95,6 @@ fn earth_centred(longitude: f64, latitude: f64, height: f64) -> [f64; 3] {
         (normal + height) * cos * c,
         (normal + height) * cos * s,
         (normal * (1.0 - square) + height) * sin,
-    ]
-}
-
-fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    (length > 0.0 && length.is_finite()).then(|| v.map(|v| v / length))
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
     ]
 }
 

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use edifice_shape::triangles::{TriangleMesh, normal};
+use edifice_shape::vec3::norm;
 
 /// Directions within so many steps of a unit are one.
 const STEPS: f64 = 1000.0;
@@ -42,6 +43,6 @@ impl Faceted {
 
 /// The vector of length 1 in a direction, if it is one.
 pub(super) fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let length = norm(v);
     (length > 0.0 && length.is_finite()).then(|| v.map(|v| v / length))
 }

@@ -2,8 +2,9 @@
 //! `EXT_meshopt_compression`.
 //!
 //! There is one buffer view of each kind (corners, triangles, places, turns, sizes, buildings), compressed as a whole by the
-//! codecs of meshoptimizer. Corners are integers along the sides of their template's box, so fine that none is farther than half
-//! a [`STEP`] from its place along a side in the largest instance. A mesh with instances takes some hundred bytes of JSON: where
+//! codecs of meshoptimizer. Corners are integers along the sides of their template's box, so fine that none is farther than 2.5 cm
+//! from its place along a side in the largest instance; places and sizes of instances are rounded as finely, so that no corner is farther
+//! than 5 cm from its place along a side. A mesh with instances takes some hundred bytes of JSON: where
 //! its instances are fewer bytes drawn out, they are written into one mesh for each square of the plan (`squares`), each corner
 //! with its `_BUILDING`. Templates with pictures are written as in plain files.
 
