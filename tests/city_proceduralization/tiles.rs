@@ -4,7 +4,7 @@ use std::path::Path;
 
 use edifice::io::city::{gltf, tiles};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
-use edifice::shape::triangles::City;
+use edifice::shape::triangles::{City, CityBuilding};
 use edifice::unwatched;
 use edifice_generators::city_proceduralization as synthetic;
 use serde_json::Value;
@@ -94,4 +94,124 @@ fn a_known_reference_system_puts_the_city_on_the_earth() {
     let latitude = (transform[14] / from_centre).asin().to_degrees();
     assert!((51.7..51.9).contains(&latitude), "{latitude}");
     assert_eq!(root["children"].as_array().unwrap().len(), 1);
+}
+
+/// The city of a tileset in a folder, and what its grammar derives.
+fn written_and_read(system: Option<&str>, compress: bool) -> (City, City) {
+    let (mut city, _) = synthetic::city(6, 0.02, 1);
+    city.origin = [85_000.0, 446_000.0, 10.0];
+    city.reference_system = system.map(str::to_owned);
+    let settings = Settings {
+        mode: Mode::Best,
+        budget: Budget::Templates(20),
+        ..Settings::default()
+    };
+    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
+    let mut settings = tiles::Settings::default();
+    settings.most_instances = 20;
+    settings.compress = compress;
+    let derivation = grammar.derive().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in tiles::to_files(&grammar, &derivation, &settings).unwrap() {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let read = edifice::io::city::read(&folder.path().join("tileset.json")).unwrap();
+    (derivation.city(&grammar), read)
+}
+
+#[test]
+fn a_tileset_is_read_as_the_city_it_was() {
+    for (compress, near) in [(false, 2e-3), (true, NEAR)] {
+        let (city, read) = written_and_read(None, compress);
+        assert_eq!((read.origin, &read.name), (city.origin, &city.name));
+        assert_eq!(read.buildings.len(), city.buildings.len());
+        for ours in &city.buildings {
+            let theirs = read.buildings.iter().find(|b| b.id == ours.id).unwrap();
+            let [(a, b), (c, d)] = [ours, theirs].map(|b| b.mesh.bounds().unwrap());
+            let apart = (0..3).map(|k| (a[k] - c[k]).abs().max((b[k] - d[k]).abs()));
+            assert!(apart.fold(0.0, f64::max) < near, "{}", ours.id);
+        }
+    }
+}
+
+#[test]
+fn a_tileset_on_the_earth_is_read_upright() {
+    let (city, read) = written_and_read(Some("EPSG:28992"), false);
+    assert_eq!(read.reference_system, None);
+    let height = |c: &City, id: &str| {
+        let building = c.buildings.iter().find(|b| b.id == id).unwrap();
+        let (low, high) = building.mesh.bounds().unwrap();
+        high[2] - low[2]
+    };
+    let own = |b: &CityBuilding| {
+        let (low, _) = b.mesh.bounds().unwrap();
+        b.mesh.volume_above(low[2])
+    };
+    let volume = |c: &City| c.buildings.iter().map(own).sum::<f64>();
+    for building in &city.buildings {
+        let [ours, theirs] = [&city, &read].map(|c| height(c, &building.id));
+        assert!((ours - theirs).abs() < 0.05, "{ours} {theirs}");
+    }
+    let [ours, theirs] = [&city, &read].map(volume);
+    assert!((ours / theirs - 1.0).abs() < 1e-5, "{ours} {theirs}");
+}
+
+#[test]
+fn tiles_of_others_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    // A plate of two triangles, 4 by 5 m, standing up in glTF's axes.
+    let plate = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":"wall"}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":5}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":48}],"buffers":[{"byteLength":48,
+        "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAQAAAAAAAAAAAAAAAAAAAoEAAAAAAAACAQAAAoEAAAAAA"}]}"#;
+    write("plate.gltf", plate.as_bytes());
+    let table = br#"{"BATCH_LENGTH":0,"RTC_CENTER":[100,0,0]}   "#;
+    let mut batched = b"b3dm".to_vec();
+    let length = 28 + table.len() + plate.len();
+    for word in [1, length, table.len(), 0, 0, 0] {
+        batched.extend((word as u32).to_le_bytes());
+    }
+    batched.extend(table);
+    batched.extend(plate.as_bytes());
+    write("old.b3dm", &batched);
+    let tile = |content: &str| {
+        format!(
+            r#"{{"boundingVolume":{{"sphere":[0,0,0,9]}},"geometricError":0,"content":{{"uri":"{content}"}}}}"#
+        )
+    };
+    let inner = format!(
+        r#"{{"asset":{{"version":"1.0"}},"geometricError":9,"root":{}}}"#,
+        tile("old.b3dm")
+    );
+    write("inner.json", inner.as_bytes());
+    let outer = format!(
+        r#"{{"asset":{{"version":"1.0"}},"geometricError":9,"root":{{"boundingVolume":{{"sphere":[0,0,0,9]}},"geometricError":9,"refine":"REPLACE",
+        "content":{{"uri":"missing.glb"}},"transform":[1,0,0,0,0,1,0,0,0,0,1,0,0,7,0,1],"children":[{},{},{}]}}}}"#,
+        tile("plate.gltf"),
+        tile("inner.json"),
+        tile("cloud.pnts")
+    );
+    write("tileset.json", outer.as_bytes());
+    let path = folder.path().join("tileset.json");
+    let city = edifice::io::city::read(&path).unwrap();
+    let ids: Vec<&str> = city.buildings.iter().map(|b| b.id.as_str()).collect();
+    assert_eq!(ids, ["plate/wall", "old/wall"]);
+    let bounds = |i: usize| city.buildings[i].mesh.bounds().unwrap();
+    assert_eq!(bounds(0), ([0.0, 7.0, 0.0], [4.0, 7.0, 5.0]));
+    assert_eq!(bounds(1), ([100.0, 7.0, 0.0], [104.0, 7.0, 5.0]));
+    assert_eq!(city.notes, ["left out: 1 tiles that are not read"]);
+    for (content, said) in [
+        ("../plate.gltf", "lies outside"),
+        ("tileset.json", "deep"),
+        ("none.glb", "none.glb"),
+    ] {
+        write(
+            "tileset.json",
+            format!(r#"{{"asset":{{}},"root":{}}}"#, tile(content)).as_bytes(),
+        );
+        let error = edifice::io::city::read(&path).map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+    }
 }

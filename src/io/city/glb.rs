@@ -196,10 +196,14 @@ impl Glb {
             return Err(GlbError::Empty);
         }
         let mut roots: Vec<usize> = (0..self.nodes.len()).collect();
-        let mut extras = json!({ "origin": grammar.origin,
-            "reference_system": grammar.reference_system });
-        if grammar.origin != [0.0; 3] && !self.is_tile {
-            let [x, y, z] = grammar.origin;
+        // A tileset says where its tiles are.
+        let origin = match self.is_tile {
+            true => [0.0; 3],
+            false => grammar.origin,
+        };
+        let mut extras = json!({ "origin": origin, "reference_system": grammar.reference_system });
+        if origin != [0.0; 3] {
+            let [x, y, z] = origin;
             extras["origin_node"] = json!(self.nodes.len());
             self.nodes
                 .push(json!({ "name": "origin", "translation": [x, z, -y], "children": roots }));

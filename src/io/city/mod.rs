@@ -11,7 +11,7 @@
 //! | `.city-grammar.json` | [`grammar_json`]: instance grammars | yes |
 //! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
 //! | `.cga` | [`cga`]: rules of CityEngine, with the start shapes and assets beside them | of a grammar |
-//! | `tileset.json` | no | [`tiles`]: 3D Tiles 1.1 |
+//! | `tileset.json` | [`tileset`]: 3D Tiles 1.0 and 1.1 | [`tiles`]: 3D Tiles 1.1 |
 //! | `.geojson` | [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
@@ -45,6 +45,7 @@ pub mod proposal_json;
 mod shells;
 mod tile_boxes;
 pub mod tiles;
+pub mod tileset;
 mod units;
 pub mod view_json;
 
@@ -105,6 +106,7 @@ pub fn read(path: &Path) -> Result<City> {
         "cga" => cga::read(path)?,
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
+        "json" if tileset::is_tileset(path) => tileset::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
         "gml" | "citygml" | "xml" => citygml::read(path)?,
         "xz" if is_gml(path) => citygml::read(path)?,
