@@ -110,8 +110,15 @@ def main():
         if done.returncode:
             sys.exit(done.stderr.decode())
     town = os.path.join(REPO, "datasets/city_proceduralization/town.city-grammar.json")
+    for command in (
+        ["derive", town, "--compress", "-o", at("small.glb")],
+        ["tiles", town, "--compress", "--instances", "60", "-o", at("tiles")],
+    ):
+        subprocess.run([edifice, "city"] + command, capture_output=True, check=True)
+    # Its mutants stand among its tiles.
+    shutil.move(at("tiles/tileset.json"), at("tileset.json"))
     gml = os.path.join(REPO, "fuzz/seeds/city_gml/wall.gml")
-    cities = [at("a.obj"), at("heap.obj"), at("a.city.json"), at("a.glb"), gml]
+    cities = [at("a.obj"), at("heap.obj"), at("a.city.json"), at("a.glb"), gml, at("small.glb"), at("tileset.json")]
     grammars = [at("a.city-grammar.json"), at("a.city-grammar.bin"), at("a.city-grammar.bin"), town]
     failures = []
     slowest = 0.0
@@ -123,7 +130,7 @@ def main():
             data = mutated(data, not name.endswith((".bin", ".glb")), rng)
             if name.endswith(".bin"):
                 data = refit(data)
-            path = at("mutant-" + name)
+            path = at("tiles/" + name if name == "tileset.json" else "mutant-" + name)
             with open(path, "wb") as out:
                 out.write(data)
             if kind == "city":
