@@ -1,7 +1,7 @@
 //! CityJSON and CityGML of others: objects that are no buildings, instances of templates, feet.
 
 use edifice::io::city::{citygml, cityjson};
-use edifice::shape::triangles::City;
+use edifice::shape::triangles::{City, repair};
 use serde_json::{Value, json};
 
 /// The faces of a box over four corners and the four above them.
@@ -147,4 +147,66 @@ fn citygml_in_feet_becomes_metres() {
     assert!((width - 100.0 * foot).abs() < 1e-6 && (depth - 50.0 * foot).abs() < 1e-6);
     assert!((height - 10.0 * foot).abs() < 1e-9);
     assert_eq!(size("EPSG:25833"), ([100.0, 50.0], 10.0));
+}
+
+#[test]
+fn footprints_with_heights_are_buildings() {
+    let square = |x: f64, y: f64, side: f64| {
+        json!([
+            [x, y],
+            [x, y + side],
+            [x + side, y + side],
+            [x + side, y],
+            [x, y]
+        ])
+    };
+    let feature = |properties: Value, rings: Value| json!({ "type": "Feature", "properties": properties, "geometry": { "type": "Polygon", "coordinates": rings } });
+    let features = json!({ "type": "FeatureCollection",
+    "crs": { "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::28992" } }, "features": [
+        feature(json!({ "id": "court", "height": "12.5 m" }), json!([square(85000.0, 446000.0, 20.0), square(85005.0, 446005.0, 10.0)])),
+        feature(json!({ "building:levels": 4, "min_height": 2 }), json!([square(85040.0, 446000.0, 10.0)])),
+        feature(json!({ "height": null }), json!([square(85080.0, 446000.0, 10.0)])),
+        { "type": "Feature", "properties": { "height": 3 }, "geometry": { "type": "Point", "coordinates": [85000, 446000] } } ] });
+    let parse = |v: &Value| {
+        edifice::io::city::footprints::parse(v.to_string().as_bytes(), "a.geojson".as_ref())
+    };
+    let city = parse(&features).unwrap();
+    assert_eq!(city.origin, [85000.0, 446000.0, 0.0]);
+    assert_eq!(city.notes, ["left out: 1 footprints without a height"]);
+    let ids: Vec<&str> = city.buildings.iter().map(|b| b.id.as_str()).collect();
+    assert_eq!(ids, ["court", "building_2"]);
+    assert!((volume(&city, 0) - 300.0 * 12.5).abs() < 1e-6);
+    let other = &city.buildings[1].mesh;
+    let (low, high) = other.bounds().unwrap();
+    assert_eq!((low[2], high[2]), (2.0, 12.0));
+    assert!((other.volume_above(2.0) - 1000.0).abs() < 1e-6);
+    for building in &city.buildings {
+        assert_eq!(repair(&building.mesh).1.open_edges, 0, "{}", building.id);
+    }
+    // A degree of latitude at 52 degrees is 111,267 m long, one of longitude 68,678 m.
+    let small = feature(
+        json!({ "height": 10 }),
+        json!([[
+            [4.36, 52.01],
+            [4.361, 52.01],
+            [4.361, 52.011],
+            [4.36, 52.011]
+        ]]),
+    );
+    let city = parse(&small).unwrap();
+    let (low, high) = city.buildings[0].mesh.bounds().unwrap();
+    assert!(
+        (high[0] - low[0] - 68.67).abs() < 0.05,
+        "{}",
+        high[0] - low[0]
+    );
+    assert!(
+        (high[1] - low[1] - 111.27).abs() < 0.05,
+        "{}",
+        high[1] - low[1]
+    );
+    let wrong = feature(json!({ "height": 10 }), json!([[["a", 1.0]]]));
+    let said = parse(&wrong).map(|_| ()).unwrap_err().to_string();
+    assert!(said.contains("features[0]"), "{said}");
+    assert!(parse(&json!({ "features": [] })).is_err());
 }

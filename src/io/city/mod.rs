@@ -12,7 +12,7 @@
 //! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
 //! | `.cga` | [`cga`]: rules of CityEngine, with the start shapes and assets beside them | of a grammar |
 //! | `tileset.json` | [`tileset`]: 3D Tiles 1.0 and 1.1 | [`tiles`]: 3D Tiles 1.1 |
-//! | `.geojson` | [`geojson`]: a shape on the ground | no |
+//! | `.geojson` | [`footprints`]: footprints with heights; [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
 mod archive;
@@ -23,6 +23,7 @@ mod cityjson_drawing;
 pub mod compact;
 pub mod earth;
 mod faceted;
+pub mod footprints;
 pub mod geojson;
 pub mod glb;
 pub mod glb_compressed;
@@ -106,6 +107,7 @@ pub fn read(path: &Path) -> Result<City> {
         "cga" => cga::read(path)?,
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
+        "geojson" => footprints::read(path)?,
         "json" if tileset::is_tileset(path) => tileset::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
         "gml" | "citygml" | "xml" => citygml::read(path)?,
