@@ -3,14 +3,15 @@
 
 use std::path::Path;
 
-use edifice::grammar::instance::InstanceGrammar;
+use edifice::grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
 use edifice::io::city::{glb, glb_compressed, gltf, grammar_file};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
-use edifice::rng::stream;
-use edifice::shape::triangles::{City, CityBuilding};
+use edifice::rng::{Stream, stream};
+use edifice::shape::triangles::{City, CityBuilding, TriangleMesh};
 use edifice::unwatched;
 use edifice_generators::city_proceduralization as synthetic;
 use rand::RngExt;
+use serde_json::Map;
 
 /// Corners are so near to their places, in metres.
 const NEAR: f64 = 0.05;
@@ -125,4 +126,57 @@ fn compression_that_promises_too_much_is_refused() {
     let said = gltf::parse(&damaged, Path::new("city.glb")).map(|_| ());
     let said = said.unwrap_err().to_string();
     assert!(said.contains("bufferViews["), "{said}");
+}
+
+/// Instances of random shapes and sizes, up to 300 m long and 6 km from the origin, flat ones and needles among them.
+#[test]
+fn random_instances_come_back_within_the_limit() {
+    let mut rng = stream(2, "random instances", 0);
+    let mut largest: f64 = 0.0;
+    for _ in 0..40 {
+        let templates: Vec<Template> = (0..6)
+            .map(|t| Template {
+                symbol: format!("T{t}"),
+                mesh: TriangleMesh {
+                    positions: (0..12)
+                        .map(|_| {
+                            let at = |rng: &mut Stream| rng.random_range(-0.5..0.5);
+                            [at(&mut rng), at(&mut rng), at(&mut rng) + 0.5]
+                        })
+                        .collect(),
+                    triangles: (0..10).map(|i| [i, i + 1, i + 2]).collect(),
+                },
+                texture: None,
+            })
+            .collect();
+        let count = rng.random_range(1..400);
+        let instances: Vec<TemplateInstance> = (0..count)
+            .map(|b| TemplateInstance {
+                template: rng.random_range(0..6),
+                building: Some(b),
+                at: [0, 1, 2].map(|k| rng.random_range(-1.0..1.0) * [6000.0, 6000.0, 100.0][k]),
+                turn: rng.random_range(0.0..360.0),
+                size: [0, 1, 2].map(|_| 0.05 * 6000.0_f64.powf(rng.random_range(0.0..1.0))),
+            })
+            .collect();
+        let grammar = InstanceGrammar {
+            name: "random".into(),
+            reference_system: None,
+            origin: [0.0; 3],
+            axiom: "City".into(),
+            templates,
+            rules: Vec::new(),
+        };
+        let mut derivation = InstanceDerivation::default();
+        derivation.buildings = (0..count).map(|b| (format!("b{b}"), Map::new())).collect();
+        derivation.instances = instances;
+        let bytes = glb_compressed::to_bytes(&grammar, &derivation).unwrap();
+        let read = gltf::parse(&bytes, Path::new("city.glb")).unwrap();
+        let city = derivation.city(&grammar);
+        for (ours, theirs) in city.buildings.iter().zip(&read.buildings) {
+            assert_eq!(ours.id, theirs.id);
+            largest = largest.max(apart(ours, theirs));
+        }
+    }
+    assert!(largest <= NEAR * 3.0_f64.sqrt(), "{largest}");
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use edifice::grammar::instance::InstanceGrammar;
 use edifice::io::city::{gltf, tiles};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
 use edifice::shape::triangles::{City, CityBuilding};
@@ -12,8 +13,8 @@ use serde_json::Value;
 /// Corners of compressed tiles are within so many metres of their places.
 const NEAR: f64 = 0.06;
 
-/// The tileset of a made city elsewhere, and its contents by name.
-fn tileset(origin: [f64; 3], system: Option<&str>, compress: bool) -> (Value, Vec<(String, City)>) {
+/// The grammar of a made city elsewhere.
+fn made(origin: [f64; 3], system: Option<&str>) -> InstanceGrammar {
     let (mut city, _) = synthetic::city(6, 0.02, 1);
     city.origin = origin;
     city.reference_system = system.map(str::to_owned);
@@ -22,7 +23,12 @@ fn tileset(origin: [f64; 3], system: Option<&str>, compress: bool) -> (Value, Ve
         budget: Budget::Templates(20),
         ..Settings::default()
     };
-    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
+    proceduralize(&city, &settings, &unwatched).unwrap().grammar
+}
+
+/// The tileset of a made city elsewhere, and its contents by name.
+fn tileset(origin: [f64; 3], system: Option<&str>, compress: bool) -> (Value, Vec<(String, City)>) {
+    let grammar = made(origin, system);
     let mut settings = tiles::Settings::default();
     settings.most_instances = 20;
     settings.compress = compress;
@@ -98,15 +104,7 @@ fn a_known_reference_system_puts_the_city_on_the_earth() {
 
 /// The city of a tileset in a folder, and what its grammar derives.
 fn written_and_read(system: Option<&str>, compress: bool) -> (City, City) {
-    let (mut city, _) = synthetic::city(6, 0.02, 1);
-    city.origin = [85_000.0, 446_000.0, 10.0];
-    city.reference_system = system.map(str::to_owned);
-    let settings = Settings {
-        mode: Mode::Best,
-        budget: Budget::Templates(20),
-        ..Settings::default()
-    };
-    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
+    let grammar = made([85_000.0, 446_000.0, 10.0], system);
     let mut settings = tiles::Settings::default();
     settings.most_instances = 20;
     settings.compress = compress;

@@ -9,7 +9,7 @@ use edifice_shape::vec3::{cross, sub};
 
 /// Semi-major axis of the ellipsoid of WGS 84, in metres, and its flattening.
 const AXIS: f64 = 6_378_137.0;
-const FLATTENING: f64 = 1.0 / 298.257_223_563;
+pub(super) const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Directions of the grid are measured over so many metres.
 const REACH: f64 = 100.0;
 

@@ -97,8 +97,12 @@ fn unit_box() -> TriangleMesh {
 
 #[cfg(test)]
 mod tests {
-    use super::{box_error, unit_box};
+    use super::{box_error, box_errors, boxes, unit_box};
+    use edifice_grammar::instance::{
+        InstanceDerivation, InstanceGrammar, Template, TemplateInstance,
+    };
     use edifice_shape::triangles::TriangleMesh;
+    use rand::RngExt;
 
     #[test]
     fn a_box_is_its_own_box_and_a_roof_is_as_far_as_it_falls() {
@@ -111,5 +115,54 @@ mod tests {
         // Twice as high, twice as far; never less where a side is longer.
         assert!((box_error(&plate, [20.0, 10.0, 16.0]) - 8.0).abs() < 1e-9);
         assert_eq!(box_error(&TriangleMesh::default(), size), 0.0);
+    }
+
+    /// The errors of instances, from those of their templates at their largest, are not below those that each instance has itself.
+    #[test]
+    fn no_instance_is_farther_from_its_box_than_told() {
+        let mut rng = edifice_base::rng::stream(1, "boxes", 0);
+        for _ in 0..200 {
+            let mut at =
+                || std::array::from_fn(|k| rng.random_range(0.0..1.0) - [0.5, 0.5, 0.0][k]);
+            let mesh = TriangleMesh {
+                positions: (0..9).map(|_| at()).collect(),
+                triangles: (0..7).map(|i| [i, i + 1, i + 2]).collect(),
+            };
+            let grammar = InstanceGrammar {
+                templates: vec![Template {
+                    symbol: "T".into(),
+                    mesh: mesh.clone(),
+                    texture: None,
+                }],
+                ..boxes(&InstanceGrammar {
+                    name: String::new(),
+                    reference_system: None,
+                    origin: [0.0; 3],
+                    axiom: "City".into(),
+                    templates: Vec::new(),
+                    rules: Vec::new(),
+                })
+            };
+            let mut derivation = InstanceDerivation::default();
+            for i in 0..10 {
+                let side = |rng: &mut edifice_base::rng::Stream| rng.random_range(0.0..50.0);
+                derivation.instances.push(TemplateInstance {
+                    template: 0,
+                    building: None,
+                    at: [0.0; 3],
+                    turn: 0.0,
+                    // Some are flat.
+                    size: [
+                        side(&mut rng),
+                        side(&mut rng),
+                        if i == 0 { 0.0 } else { side(&mut rng) },
+                    ],
+                });
+            }
+            let told = box_errors(&grammar, &derivation);
+            for (instance, told) in derivation.instances.iter().zip(told) {
+                assert!(box_error(&mesh, instance.size) <= told + 1e-9);
+            }
+        }
     }
 }

@@ -12,6 +12,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::CityError;
+use super::earth::FLATTENING;
+use super::faceted::unit;
 use super::gltf;
 use super::gltf_transform::{IDENTITY, Matrix, applied, determinant, product};
 use crate::json::parse_json;
@@ -243,15 +245,11 @@ fn stand_upright(city: &mut City) {
     }
     let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
     // The normal of the ellipsoid, from its equation: not that of a sphere.
-    let flat = 1.0 - 1.0 / 298.257_223_563;
+    let flat = 1.0 - FLATTENING;
     let up = [middle[0], middle[1], middle[2] / (flat * flat)];
-    let up = up.map(|v| v / norm(up));
-    let east = cross([0.0, 0.0, 1.0], up);
+    let up = unit(up).unwrap_or([0.0, 0.0, 1.0]);
     // At a pole every direction is south.
-    let east = match norm(east) {
-        0.0 => [1.0, 0.0, 0.0],
-        length => east.map(|v| v / length),
-    };
+    let east = unit(cross([0.0, 0.0, 1.0], up)).unwrap_or([1.0, 0.0, 0.0]);
     let north = cross(up, east);
     for building in &mut city.buildings {
         let painted = building.paint.iter_mut().flat_map(|p| &mut p.corners);

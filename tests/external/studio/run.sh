@@ -7,14 +7,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
 
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
-if [ -z "$browser" ]; then
-    if ! command -v apt-get >/dev/null || ! apt-get install -y --no-install-recommends chromium; then
-        printf 'studio: no chromium here, and none to install: the browser stories did not run\n' >&2
-        exit 1
-    fi
-    browser=$(command -v chromium)
-fi
+browser=$(tests/external/chromium.sh)
 program=${1:-}
 if [ -z "$program" ]; then
     cargo build --quiet --bin edifice
