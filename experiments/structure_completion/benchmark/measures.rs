@@ -12,7 +12,7 @@ use edifice_structure_completion::layout::{Class, Element, Layout};
 use edifice_structure_completion::measure::{agreement, off_lines, overlaps};
 use edifice_structure_completion::method::{self, Method};
 use edifice_structure_completion::model::Model;
-use edifice_structure_completion::partial::PartialLayout;
+use edifice_structure_completion::partial::{PartialLayout, hidden_in};
 
 /// Answers that are asked for.
 const ANSWERS: usize = 5;
@@ -59,12 +59,14 @@ fn share(part: usize, of: usize) -> f64 {
     part as f64 / of.max(1) as f64
 }
 
-/// Completes a partial layout by a method and measures it against what is hidden.
+/// Completes a partial layout by a method and measures it against what is hidden. `untold` are the regions that hide it where
+/// the partial layout has no mask that tells them.
 pub(crate) fn measured(
     case: [String; 3],
     (column, method, model): (&str, Method, &Model),
     layout: &Layout,
     (partial, hidden): (&PartialLayout, &[Element]),
+    untold: Option<&[Rect]>,
     rng: &mut Stream,
 ) -> Measured {
     let (answers, windows, drawn) = match method {
@@ -86,6 +88,12 @@ pub(crate) fn measured(
     put("f1_75", at(0.75));
     let steps = (0..10).map(|k| at(0.5 + 0.05 * f64::from(k)));
     put("f1_50_95", steps.sum::<f64>() / 10.0);
+    if let Some(regions) = untold {
+        let (within, beyond): (Vec<Element>, Vec<Element>) =
+            first.iter().partition(|e| hidden_in(regions, &e.rect));
+        put("f1_50_within", agreement(&within, hidden, 0.5).f1);
+        put("beyond", beyond.len() as f64);
+    }
     put(
         "overlaps",
         f64::from(u8::from(overlaps(&partial.observed, &first) > 0)),

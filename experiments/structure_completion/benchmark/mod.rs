@@ -4,7 +4,8 @@
 //! So each completion is measured in several ways at once:
 //!
 //! - made grids, which have to come back perfectly, before anything else;
-//! - agreement: F1 at an intersection over union of 0.5, of 0.75, and the mean of 0.5, 0.55, ..., 0.95;
+//! - agreement: F1 at an intersection over union of 0.5, of 0.75, and the mean of 0.5, 0.55, ..., 0.95; without a mask also F1 of what
+//!   is added within the region that a mask would have told;
 //! - coherence: completions with an overlap, new windows that lack a column or a row, numbers of columns and of rows that are
 //!   right within one;
 //! - doors: share of the hidden ones that are found, false ones a facade;
@@ -80,6 +81,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         if hidden.is_empty() {
             return Ok(Vec::new());
         }
+        let told = || u.sight.masked().hide_frozen(layout).0.unknown;
+        let untold = (!u.sight.is_masked()).then(told).flatten();
         let best = u.tested.models.iter();
         let best = best.map(|&(column, k)| (column, Method::Best, &models.all[k]));
         let baselines = BASELINES
@@ -89,7 +92,14 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         let case = [u.tested.set.to_owned(), layout.name.clone(), u.sight.name()];
         let each = best.chain(baselines).map(|column| {
             let rng = &mut stream(seed, &format!("benchmark: completion/{name}"), 0);
-            measured(case.clone(), column, layout, (&partial, &hidden), rng)
+            measured(
+                case.clone(),
+                column,
+                layout,
+                (&partial, &hidden),
+                untold.as_deref(),
+                rng,
+            )
         });
         Ok(each.collect())
     };

@@ -78,6 +78,26 @@ impl Cases<'_> {
         ctx.table(&table);
     }
 
+    /// What a mask tells: each region with it, without it, and the answers without it judged within the region.
+    fn masks(&self, ctx: &mut Context) {
+        let mut table = Table::new("What a mask tells: the default model's F1 at 0.5 with it, without it, and of what is added within the region without it")
+            .column("hidden", Align::Left)
+            .numbers(["masked", "maskless", "maskless, within the region", "elements added beyond it"]);
+        for part in Sight::all().into_iter().filter(|s| !s.is_masked()) {
+            let own = |measure: &str, sight: Sight| {
+                text(self.over_sets("default", measure, Some(&sight.name())), 3)
+            };
+            table.row([
+                part.masked().name(),
+                own("f1_50", part.masked()),
+                own("f1_50", part),
+                own("f1_50_within", part),
+                own("beyond", part),
+            ]);
+        }
+        ctx.table(&table);
+    }
+
     /// F1 at 0.5 of each set and part.
     fn by_set(&self, ctx: &mut Context) {
         let columns = self.columns();
@@ -192,6 +212,7 @@ impl Cases<'_> {
         }
         Margins::new(self.0).tables(ctx);
         self.draws(ctx)?;
+        self.masks(ctx);
         self.by_set(ctx);
         Ok(())
     }

@@ -53,6 +53,19 @@ impl Sight {
         parts.flat_map(both).collect()
     }
 
+    /// The same part with its mask.
+    pub fn masked(self) -> Self {
+        Self {
+            masked: true,
+            ..self
+        }
+    }
+
+    /// True if what is hidden is told as regions.
+    pub fn is_masked(self) -> bool {
+        self.masked
+    }
+
     /// A task as it is, with its mask where it has one.
     pub fn of(task: Task) -> Self {
         Self {

@@ -19,14 +19,41 @@ pub(crate) struct Cells {
     pub columns: Vec<LatticeLine>,
     /// The observed rows, from the bottom.
     pub rows: Vec<LatticeLine>,
+    /// Number of observed elements.
+    pub observed: usize,
+    /// Row by row, true where an element is observed.
+    pub seen: Vec<bool>,
     /// Row by row: about 1 where an element is, about 0 where none is.
     values: Vec<f64>,
 }
 
 impl Cells {
-    /// The completed value of a cell.
-    pub(crate) fn value(&self, row: usize, column: usize) -> f64 {
-        self.values[row * self.columns.len() + column]
+    /// The completed value of a cell, counted row by row.
+    pub(crate) fn value(&self, cell: usize) -> f64 {
+        self.values[cell]
+    }
+
+    /// Number of cells.
+    pub(crate) fn count(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Of the cells that three observed elements at the corners of a rectangle imply, the share that is observed; `None` where
+    /// none is implied. Each cell counts once for every three that imply it.
+    pub(crate) fn closed(&self) -> Option<f64> {
+        let count = self.columns.len();
+        let rows: Vec<&[bool]> = self.seen.chunks(count).collect();
+        let (mut implied, mut closed) = (0, 0);
+        for (a, one) in rows.iter().enumerate() {
+            let own = one.iter().filter(|seen| **seen).count();
+            for (_, other) in rows.iter().enumerate().filter(|(b, _)| *b != a) {
+                // A column of both rows, and another one of the first row.
+                let both = (0..count).filter(|&c| one[c] && other[c]).count();
+                implied += both * own.saturating_sub(1);
+                closed += both * both.saturating_sub(1);
+            }
+        }
+        (implied > 0).then(|| closed as f64 / implied as f64)
     }
 
     /// Number of filled cells.
@@ -46,13 +73,17 @@ pub(crate) fn cells(partial: &PartialLayout, rects: &[Rect]) -> Cells {
             known.push((!partial.is_unknown(c.at, r.at)).then_some(0.0));
         }
     }
+    let mut seen = vec![false; known.len()];
     for (r, c) in row.iter().zip(&column) {
-        known[r * columns.len() + c] = Some(1.0);
+        let cell = r * columns.len() + c;
+        (known[cell], seen[cell]) = (Some(1.0), true);
     }
     let values = soft_impute(rows.len(), columns.len(), &known, LAMBDA, Limits::default());
     Cells {
         columns,
         rows,
+        observed: rects.len(),
+        seen,
         values: values.transpose().iter().copied().collect(),
     }
 }
@@ -65,7 +96,7 @@ pub fn low_rank(partial: &PartialLayout) -> Completion {
         let cells = cells(partial, &rects);
         for (r, row) in cells.rows.iter().enumerate() {
             for (c, column) in cells.columns.iter().enumerate() {
-                if cells.value(r, c) > FILLED {
+                if cells.value(r * cells.columns.len() + c) > FILLED {
                     let (x, y) = (column.at - column.size / 2.0, row.at - row.size / 2.0);
                     elements.push(Element::new(class, Rect::new(x, y, column.size, row.size)));
                 }

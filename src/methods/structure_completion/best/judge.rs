@@ -46,6 +46,8 @@ pub struct Judge<'a> {
     value: Vec<f64>,
     /// Candidates by falling value.
     order: Vec<usize>,
+    /// Least value of a window that is added.
+    least: f64,
     /// The door that a facade without one gets.
     door: Option<usize>,
     expected: f64,
@@ -53,11 +55,12 @@ pub struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     /// Judges by the value of each candidate (the mean of its probabilities) and the expected number of hidden elements;
-    /// `door` is the one that the facade gets.
+    /// no window of less than `least` is added; `door` is the one that the facade gets.
     pub fn new(
         observation: &'a Observation<'a>,
         candidates: &'a Candidates,
         value: Vec<f64>,
+        least: f64,
         door: Option<usize>,
         expected: f64,
     ) -> Self {
@@ -68,6 +71,7 @@ impl<'a> Judge<'a> {
             candidates,
             value,
             order,
+            least,
             door,
             expected,
         }
@@ -97,8 +101,9 @@ impl<'a> Judge<'a> {
             let met = |o: &Element| {
                 clash(o, own) || (o.class == own.class && o.rect.iou(&own.rect) > SAME)
             };
+            let improbable = own.class == Class::Window && self.value[c] < self.least;
             let second = own.class == Class::Door && self.door != Some(c) && !several;
-            if second || !allowed(own) || taken.any_near(&own.rect, met) {
+            if second || improbable || !allowed(own) || taken.any_near(&own.rect, met) {
                 continue;
             }
             let with = sum + self.value[c];

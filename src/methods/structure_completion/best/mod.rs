@@ -4,10 +4,11 @@
 //!    database below the lowest seen row, and database facades warped to the seen lines.
 //! 2. [`candidates`]: every distinct element, with the share of the pool that supports it and features of its place.
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
-//!    Without a mask it is weighed by what the seen lines say (`scattered`).
+//!    Without a mask it is weighed by what the seen lines say (`scattered`) and the seen windows without a balcony (`bare`).
 //! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
 //!    within their rows (`rows`) and the one door that is likely ([`doors`]).
 
+mod bare;
 mod belong;
 mod by_place;
 pub mod candidates;

@@ -59,8 +59,7 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         Some(learnt) => candidates.probabilities(learnt),
         None => loose.iter().map(|p| TIGHT * p).collect(),
     };
-    scattered::weigh(&observation, &candidates, &mut loose);
-    scattered::weigh(&observation, &candidates, &mut tight);
+    let least = scattered::weigh(&observation, &candidates, [&mut loose, &mut tight]);
     let door = door(model, &observation, &draws, &mut candidates, &mut loose);
     tight.resize(loose.len(), 0.0);
     if let Some(door) = door {
@@ -73,6 +72,7 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
         &observation,
         &candidates,
         value,
+        least,
         door,
         expected(&draws, &weights),
     );

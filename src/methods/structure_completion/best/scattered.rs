@@ -7,13 +7,20 @@
 //! follow that the features of a candidate do not hold:
 //!
 //! - A line of m windows on which none is seen would have to be hidden whole, with probability `(1 - q)^m`, q now without the
-//!   bias that each seen line has at least one seen window. Where that is below [`RARE`], its windows are so much less
+//!   bias that each seen line has at least one seen window. Where that is below a limit ([`RARE`]), its windows are so much less
 //!   probable, whether the chain, a mirror image or another facade proposes them.
-//! - A cell of a seen row and a seen column is judged by the other rows and columns, too: its probability is the mean of what
-//!   was learnt and of the completed matrix.
+//! - A cell of a seen row and a seen column is judged by the other rows and columns, too: its probability is a mean of what
+//!   was learnt and of the completed matrix. Among the candidates of one cell the learnt order stays.
+//!
+//! How far the completed matrix is believed depends on the agreement of the rows. Of the cells that three seen windows at the
+//! corners of a rectangle imply, a share a is seen ([`Cells::closed`]). If windows of a full grid were hidden at random, a would be the share d of
+//! all cells that is seen; `kappa = (a - d) / (1 - d)` is the agreement beyond this (the form of Cohen 1960). Rows that agree
+//! beyond chance show the layout of the facade itself, with gaps that are its own: there the matrix alone is believed, also when it
+//! says that nothing is hidden, and a window is added only where it is nearly as probable as not ([`SHOWN`]).
 
+use super::bare;
 use super::candidates::Candidates;
-use super::observation::{Observation, of};
+use super::observation::{Observation, at_most, of};
 use crate::baselines::{Cells, cells};
 use crate::layout::lines::LatticeLine;
 use crate::layout::{Class, Element};
@@ -23,10 +30,22 @@ use edifice_shape::{Axis, Rect};
 /// A window is on a seen line when its centre is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.35;
 /// A line that is hidden whole with at least this probability is none that speaks against itself: parts of facades that are
-/// hidden so were learnt from.
-const RARE: f64 = 0.2;
-/// Shares of the filled cells that are seen: up to the first, single windows are hidden; from the second on, a region.
-const SINGLE: [f64; 2] = [0.8, 0.95];
+/// hidden so were learnt from. Where rows agree by chance, and where they agree beyond it.
+const RARE: [f64; 2] = [0.2, 0.5];
+/// Share of the completed matrix in the probability of a cell, by agreement as before.
+const BELIEF: [f64; 2] = [0.5, 1.0];
+/// Shares of the filled cells that are seen: up to the first, single windows are hidden; from the second on, a region. By
+/// agreement as before.
+const SINGLE: [[f64; 2]; 2] = [[0.8, 0.95], [1.0, 1.05]];
+/// Agreement of rows: up to the first that of chance, from the second on beyond it.
+const AGREEMENT: [f64; 2] = [-0.2, 0.0];
+/// Share of all cells that is seen: up to the first, rows can agree beyond chance; from the second on there is nothing to agree
+/// on.
+const GAPS: [f64; 2] = [0.8, 0.95];
+/// Least value of a window that is added where rows agree beyond chance.
+const SHOWN: f64 = 0.4;
+/// Least learnt probability of the best candidate of a cell, so that a cell of which little was learnt can be raised.
+const LEAST: f64 = 0.05;
 /// Room for a further line between the outermost seen one and the side of the facade, in distances of lines: up to the first
 /// there is none, from the second on there is.
 const ROOM: [f64; 2] = [0.6, 1.1];
@@ -38,52 +57,98 @@ struct Scattered {
     cells: Cells,
     /// Probability that single windows are hidden, and not a region.
     single: f64,
+    /// Degree to which rows agree beyond chance, from 0 to 1.
+    agreement: f64,
     /// Factor of a window on a column and on a row that would be hidden whole.
     hidden: [f64; 2],
 }
 
-/// Changes the probabilities of windows, one for each of the first candidates; with a mask none.
-pub(crate) fn weigh(observation: &Observation, candidates: &Candidates, probabilities: &mut [f64]) {
-    let Some(scattered) = Scattered::new(observation) else {
-        return;
+/// Where a window stands.
+enum Place {
+    /// In the cell of a seen row and a seen column.
+    Cell(usize),
+    /// On a line of which no window is seen; with the factor of its probability.
+    Unseen(f64),
+}
+
+/// Changes the probabilities of windows at both overlaps, one for each of the first candidates; with a mask none. Returns the
+/// least value of a window that may be added.
+pub(crate) fn weigh(
+    observation: &Observation,
+    candidates: &Candidates,
+    [loose, tight]: [&mut [f64]; 2],
+) -> f64 {
+    let Some(seen) = seen(observation) else {
+        return 0.0;
     };
-    for (candidate, probability) in candidates.all.iter().zip(probabilities) {
-        if candidate.element.class == Class::Window {
-            *probability = scattered.weighed(observation, &candidate.element, *probability);
+    let cells = cells(observation.partial, &seen);
+    if let Some(closed) = cells.closed() {
+        bare::weigh(&seen, closed, &candidates.all, [&mut *loose, &mut *tight]);
+    }
+    let Some(scattered) = Scattered::new(observation, cells) else {
+        return 0.0;
+    };
+    let places: Vec<Option<Place>> = candidates
+        .all
+        .iter()
+        .map(|c| {
+            let is_window = c.element.class == Class::Window;
+            is_window.then(|| scattered.place(observation, &c.element))
+        })
+        .collect();
+    // What was learnt of a cell is the probability of its best candidate.
+    let mut learnt = vec![LEAST; scattered.cells.count()];
+    for (place, probability) in places.iter().zip(loose.iter()) {
+        if let Some(Place::Cell(cell)) = place {
+            learnt[*cell] = learnt[*cell].max(*probability);
         }
     }
+    let each = places.iter().zip(loose.iter_mut().zip(tight));
+    for (place, (loose, tight)) in each {
+        let factor = match place {
+            Some(Place::Cell(cell)) => scattered.of_cell(*cell, learnt[*cell]) / learnt[*cell],
+            Some(Place::Unseen(factor)) => *factor,
+            None => continue,
+        };
+        *loose = (*loose * factor).min(1.0);
+        *tight = (*tight * factor).min(1.0);
+    }
+    SHOWN * scattered.single * scattered.agreement
+}
+
+/// The seen windows; `None` with a mask, and of none.
+fn seen(observation: &Observation) -> Option<Vec<Rect>> {
+    let windows = of(&observation.elements, Class::Window).map(|e| e.rect);
+    let windows: Vec<Rect> = windows.collect();
+    (observation.partial.unknown.is_none() && !windows.is_empty()).then_some(windows)
 }
 
 impl Scattered {
-    /// `None` with a mask, without a window, and where one region is hidden.
-    fn new(observation: &Observation) -> Option<Self> {
-        let seen: Vec<Rect> = of(&observation.elements, Class::Window)
-            .map(|e| e.rect)
-            .collect();
-        if observation.partial.unknown.is_some() || seen.is_empty() {
-            return None;
-        }
-        let cells = cells(observation.partial, &seen);
-        let filled = cells.filled().max(seen.len()) as f64;
-        let share = seen.len() as f64 / filled;
-        let single = at_most(share, SINGLE) * reach(observation.partial, &cells);
+    /// `None` where one region is hidden.
+    fn new(observation: &Observation, cells: Cells) -> Option<Self> {
+        let seen = cells.observed as f64;
+        let filled = (cells.filled() as f64).max(seen);
+        let share = seen / filled;
+        let agreement = agreement(&cells);
+        let single = SINGLE.map(|limits| at_most(share, limits));
+        let single = mix(single, agreement) * reach(observation.partial, &cells);
         let hidden = [cells.columns.len(), cells.rows.len()].map(|lines| {
             // Each line has a seen window because it would not be a line otherwise; the fewest that give every line one
             // say nothing of the share.
             let cover = cells.columns.len().max(cells.rows.len()) as f64;
-            let share = (seen.len() as f64 - cover) / (filled - cover).max(1.0);
+            let share = (seen - cover) / (filled - cover).max(1.0);
             let whole = (1.0 - share).powf(filled / lines as f64);
-            1.0 - single + single * (whole / RARE).min(1.0)
+            1.0 - single + single * (whole / mix(RARE, agreement)).min(1.0)
         });
         (single > 0.0).then_some(Self {
             cells,
             single,
+            agreement,
             hidden,
         })
     }
 
-    /// The probability of one window.
-    fn weighed(&self, observation: &Observation, window: &Element, probability: f64) -> f64 {
+    fn place(&self, observation: &Observation, window: &Element) -> Place {
         let (x, y) = window.rect.centre();
         let on = |lines: &[LatticeLine], at: f64, axis: Axis| {
             let near = |l: &LatticeLine| (l.at - at).abs() < ON_LINE * observation.extent(axis);
@@ -91,20 +156,34 @@ impl Scattered {
         };
         let (columns, rows) = (&self.cells.columns, &self.cells.rows);
         match (on(rows, y, Axis::Y), on(columns, x, Axis::X)) {
-            (Some(row), Some(column)) => {
-                let completed = self.cells.value(row, column).clamp(0.0, 1.0);
-                probability + self.single * (completed - probability) / 2.0
-            }
-            (Some(_), None) => probability * self.hidden[0],
-            (None, Some(_)) => probability * self.hidden[1],
-            (None, None) => probability * self.hidden[0].min(self.hidden[1]),
+            (Some(row), Some(column)) => Place::Cell(row * columns.len() + column),
+            (Some(_), None) => Place::Unseen(self.hidden[0]),
+            (None, Some(_)) => Place::Unseen(self.hidden[1]),
+            (None, None) => Place::Unseen(self.hidden[0].min(self.hidden[1])),
         }
+    }
+
+    /// Probability of a window in a cell of which a probability was learnt.
+    fn of_cell(&self, cell: usize, learnt: f64) -> f64 {
+        let completed = self.cells.value(cell).clamp(0.0, 1.0);
+        let belief = self.single * mix(BELIEF, self.agreement);
+        learnt + belief * (completed - learnt)
     }
 }
 
-/// 1 up to the first limit, 0 from the second on, a straight line between them.
-fn at_most(value: f64, limits: [f64; 2]) -> f64 {
-    ((limits[1] - value) / (limits[1] - limits[0])).clamp(0.0, 1.0)
+/// The first of two values at 0, the second at 1, a straight line between them.
+fn mix([first, second]: [f64; 2], share: f64) -> f64 {
+    first + share * (second - first)
+}
+
+/// Degree to which rows agree beyond chance, from 0 to 1.
+fn agreement(cells: &Cells) -> f64 {
+    let seen = cells.seen.iter().filter(|seen| **seen).count() as f64 / cells.count() as f64;
+    let Some(closed) = cells.closed().filter(|_| seen < GAPS[1]) else {
+        return 0.0;
+    };
+    let kappa = (closed - seen) / (1.0 - seen);
+    (1.0 - at_most(kappa, AGREEMENT)) * at_most(seen, GAPS)
 }
 
 /// The degree to which the seen lines leave no room for others at the sides of the facade, from 0 to 1.
@@ -152,7 +231,12 @@ mod tests {
         let observation = Observation::new(partial, partial.observed.clone(), (20.0, 30.0));
         let (x, y) = (40.0 * column as f64 + 10.0, 50.0 * row as f64 + 10.0);
         let window = Element::new(Class::Window, Rect::new(x, y, 20.0, 30.0));
-        Scattered::new(&observation).map_or(0.5, |s| s.weighed(&observation, &window, 0.5))
+        let scattered =
+            seen(&observation).and_then(|seen| Scattered::new(&observation, cells(partial, &seen)));
+        scattered.map_or(0.5, |s| match s.place(&observation, &window) {
+            Place::Cell(cell) => s.of_cell(cell, 0.5),
+            Place::Unseen(factor) => 0.5 * factor,
+        })
     }
 
     #[test]
@@ -190,5 +274,26 @@ mod tests {
     fn few_seen_windows_leave_every_line_possible() {
         let few = partial(&["....", ".#..", "...#", "...."], None);
         assert!(weighed_at(&few, 0, 2) > 0.3);
+    }
+
+    #[test]
+    fn rows_that_agree_beyond_chance_show_gaps_of_their_own() {
+        let agreement_of = |rows: &[&str]| {
+            let partial = partial(rows, None);
+            let windows: Vec<Rect> = partial.observed.iter().map(|e| e.rect).collect();
+            agreement(&cells(&partial, &windows))
+        };
+        // Two kinds of rows, each as often as the other.
+        let kinds = ["#.#.#.#", ".#.#.#.", "#.#.#.#", ".#.#.#."];
+        assert_eq!(agreement_of(&kinds), 1.0);
+        // Windows of a full grid, here and there.
+        let random = ["#..#.#.", ".##...#", "#...##.", "..##..#", "##..#.."];
+        assert!(agreement_of(&random) < 0.3);
+        // Full rows have nothing to agree on, and one row no other.
+        assert_eq!(agreement_of(&["####", "####", "####"]), 0.0);
+        assert_eq!(agreement_of(&["#..##"]), 0.0);
+        // A column of another kind of row is then not filled.
+        let gap = weighed_at(&partial(&kinds, None), 0, 0);
+        assert!(gap < 0.1, "{gap}");
     }
 }
