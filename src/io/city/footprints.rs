@@ -1,4 +1,4 @@
-//! Footprints with heights as GeoJSON: each `Polygon` or `MultiPolygon` of a feature is a building with upright walls and a flat roof.
+//! Footprints with heights as GeoJSON or, by [`geopackage`](super::geopackage), as a GeoPackage: each `Polygon` or `MultiPolygon` of a feature is a building with upright walls and a flat roof.
 //!
 //! Heights are read from the first of these properties that is a number above 0, or text that begins with one: `height`,
 //! `building:height`, `measuredHeight`, `render_height`; else storeys of 3 m by `building:levels`, `levels`, `storeys`. `min_height` is the
@@ -50,9 +50,19 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         None => &one,
     };
     let system = document.pointer("/crs/properties/name");
+    let system = system.and_then(Value::as_str).map(str::to_owned);
+    of_features(features, system, path)
+}
+
+/// The buildings of the features of GeoJSON; `path` only names them in errors.
+pub(super) fn of_features(
+    features: &[Value],
+    reference_system: Option<String>,
+    path: &Path,
+) -> Result<City> {
     let mut city = City {
         name: crate::file_stem(path),
-        reference_system: system.and_then(Value::as_str).map(str::to_owned),
+        reference_system,
         ..City::default()
     };
     let mut found: Vec<(CityBuilding, Vec<Vec<Ring>>, [f64; 2])> = Vec::new();
@@ -93,6 +103,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         Some(&first) if degrees => {
             city.notes
                 .push("degrees were projected to metres around the first corner".into());
+            city.reference_system = None;
             Place::around(first)
         }
         first => first.map(|p| Place::Metres(p.map(f64::floor))),

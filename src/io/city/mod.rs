@@ -12,6 +12,7 @@
 //! | `.city-grammar.bin` | [`compact`]: the same in few bytes | yes |
 //! | `.cga` | [`cga`]: rules of CityEngine, with the start shapes and assets beside them | of a grammar |
 //! | `tileset.json` | [`tileset`]: 3D Tiles 1.0 and 1.1 | [`tiles`]: 3D Tiles 1.1 |
+//! | `.gpkg` | [`geopackage`]: footprints with heights | no |
 //! | `.geojson` | [`footprints`]: footprints with heights; [`geojson`]: a shape on the ground | no |
 //! | `.json` | [`view_json`]: buildings that one sees | no |
 
@@ -25,6 +26,7 @@ pub mod earth;
 mod faceted;
 pub mod footprints;
 pub mod geojson;
+pub mod geopackage;
 pub mod glb;
 pub mod glb_compressed;
 pub mod gltf;
@@ -108,6 +110,7 @@ pub fn read(path: &Path) -> Result<City> {
         "obj" => obj::read(path)?,
         "glb" | "gltf" => gltf::read(path)?,
         "geojson" => footprints::read(path)?,
+        "gpkg" => geopackage::read(path)?,
         "json" if tileset::is_tileset(path) => tileset::read(path)?,
         "json" | "jsonl" => cityjson::read(path)?,
         "gml" | "citygml" | "xml" => citygml::read(path)?,
