@@ -39,6 +39,8 @@ const BELIEF: [f64; 2] = [0.5, 1.0];
 const SINGLE: [[f64; 2]; 2] = [[0.8, 0.95], [1.0, 1.05]];
 /// Agreement of rows: up to the first that of chance, from the second on beyond it.
 const AGREEMENT: [f64; 2] = [-0.2, 0.0];
+/// Seen windows: up to the first they agree by chance, from the second on agreement says something.
+const ENOUGH: [f64; 2] = [6.0, 12.0];
 /// Share of all cells that is seen: up to the first, rows can agree beyond chance; from the second on there is nothing to agree
 /// on.
 const GAPS: [f64; 2] = [0.8, 0.95];
@@ -183,7 +185,8 @@ fn agreement(cells: &Cells) -> f64 {
         return 0.0;
     };
     let kappa = (closed - seen) / (1.0 - seen);
-    (1.0 - at_most(kappa, AGREEMENT)) * at_most(seen, GAPS)
+    let enough = 1.0 - at_most(cells.observed as f64, ENOUGH);
+    (1.0 - at_most(kappa, AGREEMENT)) * enough * at_most(seen, GAPS)
 }
 
 /// The degree to which the seen lines leave no room for others at the sides of the facade, from 0 to 1.
