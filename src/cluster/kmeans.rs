@@ -201,3 +201,31 @@ fn assign(points: &[f64], dimension: usize, centres: &[f64]) -> Vec<usize> {
 fn square(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::rng::stream;
+
+    #[test]
+    fn each_point_is_with_its_nearest_centre() {
+        for dimension in 1..6 {
+            let mut rng = stream(5, "points", dimension as u64);
+            let points: Vec<f64> = (0..300 * dimension).map(|_| rng.random()).collect();
+            let k = 7;
+            let found = kmeans_unweighted(&points, dimension, k, 20, &mut rng);
+            assert_eq!(found.centres.len(), k * dimension);
+            let mut sse = 0.0;
+            for (p, label) in points.chunks(dimension).zip(&found.labels) {
+                let distance =
+                    |c: &[f64]| -> f64 { p.iter().zip(c).map(|(a, b)| (a - b) * (a - b)).sum() };
+                let all = found.centres.chunks(dimension).map(distance);
+                let least = all.clone().fold(f64::INFINITY, f64::min);
+                let own = all.clone().nth(*label).unwrap();
+                assert!(own <= least + 1e-12, "{own} {least}");
+                sse += own;
+            }
+            assert!((sse - found.sse).abs() < 1e-9);
+        }
+    }
+}

@@ -237,3 +237,29 @@ where
         self.inner.terminate(state)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn steps_are_told_whole() {
+        let told = Mutex::new(Vec::new());
+        let watch = |progress: Progress| {
+            told.lock().unwrap().push(progress);
+            ControlFlow::Continue(())
+        };
+        let mut observer = tell(&watch, Some(10));
+        let step = Step {
+            iteration: 3,
+            cost: 2.5,
+            best: 1.5,
+        };
+        assert!(observer(step).is_continue());
+        drop(observer);
+        let told = told.into_inner().unwrap();
+        assert_eq!((told[0].done, told[0].most), (4, Some(10)));
+        assert_eq!((told[0].cost, told[0].best), (Some(2.5), Some(1.5)));
+    }
+}

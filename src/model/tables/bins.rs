@@ -195,3 +195,25 @@ pub fn binned(table: &Table) -> Result<(Table, Vec<Binned>), ModelError> {
     }
     Ok((out, how))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cuts_move_with_the_values() {
+        let values: Vec<f64> = (0..400)
+            .map(|i| f64::from(i % 4 / 3) * 10.0 + f64::from(i) / 400.0)
+            .collect();
+        let found = cuts(&values);
+        assert!(!found.is_empty() && found.len() < 20, "{found:?}");
+        for shift in [-1000.0, 1000.0] {
+            let moved: Vec<f64> = values.iter().map(|v| v + shift).collect();
+            let again = cuts(&moved);
+            assert_eq!(again.len(), found.len());
+            for (a, b) in again.iter().zip(&found) {
+                assert!((a - shift - b).abs() < 1e-9, "{a} {b}");
+            }
+        }
+    }
+}

@@ -120,4 +120,23 @@ mod tests {
             assert!((area - side * side / 2.0).abs() < 1e-12, "A({z}) = {area}");
         }
     }
+
+    #[test]
+    fn shares_are_those_of_the_parts_that_a_plane_cuts() {
+        let mut next = edifice_base::rng::stream(4, "shares", 0);
+        let mut number = || rand::RngExt::random_range(&mut next, -2.0..2.0);
+        for _ in 0..2000 {
+            let t: Corners = std::array::from_fn(|_| std::array::from_fn(|_| number()));
+            let z = number();
+            let mut mesh = TriangleMesh::default();
+            mesh.push(t);
+            let [below, above] = &super::super::clip_to_slabs(&mesh, &[z])[..] else {
+                panic!("two parts");
+            };
+            let whole = mesh.area();
+            assert!((below.area() + above.area() - whole).abs() < 1e-9 * (1.0 + whole));
+            let share = share_above(&t, z);
+            assert!((above.area() - share * whole).abs() < 1e-4, "{t:?} {z}");
+        }
+    }
 }

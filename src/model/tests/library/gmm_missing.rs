@@ -66,6 +66,10 @@ fn the_density_of_what_is_observed_is_the_marginal() {
         let points = Points::with_missing(D, &values).unwrap();
         let posteriors = mixture.posterior(&points).unwrap();
         let logs = mixture.log_density(&points).unwrap();
+        assert_eq!(posteriors.len() * D, values.len());
+        for posterior in &posteriors {
+            assert!((posterior.iter().sum::<f64>() - 1.0).abs() < 1e-12 && posterior.len() == 2);
+        }
         let (weights, means, covariances) = parts(&mixture);
         for ((x, log), posterior) in values.chunks(D).zip(logs).zip(posteriors) {
             // The mixture over the observed coordinates alone.
