@@ -1,7 +1,7 @@
 //! Footprints with heights as a GeoPackage (OGC 12-128r18): the tables of features of a database of SQLite.
 //!
 //! Each row of each table that `gpkg_contents` lists as `features` is a feature as GeoJSON has it, with the columns of the row as properties:
-//! [`footprints`](super::footprints) says what becomes of it. The reference system is that of the tables; of tables with several, the
+//! [`footprints`] says what becomes of it. The reference system is that of the tables; of tables with several, the
 //! first that has features decides, and the others are left out and noted.
 
 use std::path::Path;
