@@ -78,7 +78,7 @@ impl Cases<'_> {
         ctx.table(&table);
     }
 
-    /// What a mask tells: each region with it, without it, and the answers without it judged within the region.
+    /// The worth of a mask: each region with it, without it, and the answers without it judged within the region.
     fn masks(&self, ctx: &mut Context) {
         let mut table = Table::new("What a mask tells: the default model's F1 at 0.5 with it, without it, and of what is added within the region without it")
             .column("hidden", Align::Left)

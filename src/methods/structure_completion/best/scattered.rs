@@ -65,7 +65,7 @@ struct Scattered {
     hidden: [f64; 2],
 }
 
-/// Where a window stands.
+/// The place of a window.
 enum Place {
     /// In the cell of a seen row and a seen column.
     Cell(usize),
