@@ -99,11 +99,15 @@ fn system_name(database: &Connection, system: i64) -> rusqlite::Result<Option<St
     Ok(Some(format!("{}:{code}", organization.to_uppercase())))
 }
 
-/// The names of the columns that `SELECT *` gives. (The names of a statement, which `rusqlite` would give, panic in a damaged file.)
-fn columns(database: &Connection, table: &str) -> rusqlite::Result<Vec<String>> {
-    let mut query = database
-        .prepare("SELECT name FROM pragma_table_xinfo(?1) WHERE hidden <> 1 ORDER BY cid")?;
-    query.query_map([table], |row| row.get(0))?.collect()
+/// The names of the columns that `SELECT *` gives, and whether each is the key of the table. (The names of a statement, which `rusqlite`
+/// would give, panic in a damaged file.)
+fn columns(database: &Connection, table: &str) -> rusqlite::Result<Vec<(String, bool)>> {
+    let mut query = database.prepare(
+        "SELECT name, pk = 1 FROM pragma_table_xinfo(?1) WHERE hidden <> 1 ORDER BY cid",
+    )?;
+    query
+        .query_map([table], |row| Ok((row.get(0)?, row.get(1)?)))?
+        .collect()
 }
 
 /// Appends the rows of a table as features.
@@ -131,21 +135,24 @@ fn rows(
             return Ok(());
         };
         let mut properties = Map::new();
-        let mut geometry = Value::Null;
-        for (k, column) in columns.iter().enumerate() {
+        let (mut geometry, mut key) = (Value::Null, Value::Null);
+        for (k, (column, is_key)) in columns.iter().enumerate() {
             let value = row.get_ref(k).map_err(|e| at(count, e.to_string()))?;
             match value {
                 ValueRef::Blob(blob) if *column == table.geometry => {
                     geometry = of_blob(blob).map_err(|text| at(count, text))?;
                 }
                 value => {
+                    if *is_key {
+                        key = of_value(value);
+                    }
                     properties.insert(column.clone(), of_value(value));
                 }
             }
         }
-        // The key of the row, called `fid` by custom, is the identifier where there is no other.
-        let id = properties.get("fid").cloned().unwrap_or(Value::Null);
-        let id = properties.get("id").cloned().unwrap_or(id);
+        // The key of the row is the identifier where there is no other.
+        let id = properties.get("id").filter(|id| !id.is_null());
+        let id = id.cloned().unwrap_or(key);
         features.push(json!({ "id": id, "properties": properties, "geometry": geometry }));
     }
 }
@@ -195,7 +202,7 @@ mod tests {
                  INSERT INTO gpkg_contents VALUES ('houses \"a\"', 'features'), ('other', 'features'), ('plan', 'tiles');
                  CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, srs_id INTEGER);
                  INSERT INTO gpkg_geometry_columns VALUES ('houses \"a\"', 'shape', 28992), ('other', 'geom', 2263);
-                 CREATE TABLE \"houses \"\"a\"\"\" (fid INTEGER PRIMARY KEY, shape BLOB, height REAL, use TEXT);
+                 CREATE TABLE \"houses \"\"a\"\"\" (ogc_fid INTEGER PRIMARY KEY, id TEXT, shape BLOB, height REAL, use TEXT);
                  CREATE TABLE other (geom BLOB, height REAL);",
             )
             .unwrap();

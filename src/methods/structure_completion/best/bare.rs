@@ -5,9 +5,9 @@
 //! which it is: of the cells that three seen windows at the corners of a rectangle imply, few are empty where no single
 //! window is hidden, and then no single balcony is.
 
+use super::at_most;
 use super::belong::is_host;
 use super::candidates::Candidate;
-use super::observation::at_most;
 use crate::layout::Class;
 use edifice_shape::Rect;
 

@@ -48,3 +48,8 @@ fn categorical<R: Rng>(weights: &[f64], rng: &mut R) -> usize {
     }
     last
 }
+
+/// 1 up to the first limit, 0 from the second on, a straight line between them.
+fn at_most(value: f64, limits: [f64; 2]) -> f64 {
+    ((limits[1] - value) / (limits[1] - limits[0])).clamp(0.0, 1.0)
+}

@@ -134,8 +134,3 @@ fn standing(elements: &[Element], (wide, high): (f64, f64)) -> Vec<Rect> {
 pub fn of(elements: &[Element], class: Class) -> impl Iterator<Item = &Element> {
     elements.iter().filter(move |e| e.class == class)
 }
-
-/// 1 up to the first limit, 0 from the second on, a straight line between them.
-pub(super) fn at_most(value: f64, limits: [f64; 2]) -> f64 {
-    ((limits[1] - value) / (limits[1] - limits[0])).clamp(0.0, 1.0)
-}

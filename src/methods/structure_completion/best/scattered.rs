@@ -14,13 +14,15 @@
 //!
 //! How far the completed matrix is believed depends on the agreement of the rows. Of the cells that three seen windows at the
 //! corners of a rectangle imply, a share a is seen ([`Cells::closed`]). If windows of a full grid were hidden at random, a would be the share d of
-//! all cells that is seen; `kappa = (a - d) / (1 - d)` is the agreement beyond this (the form of Cohen 1960). Rows that agree
+//! all cells that is seen; `kappa = (a - d) / (1 - d)` is the agreement beyond this (the form of Cohen 1960).
+//! Lines of which no window is seen are missing among the cells, so that d is too large: the kappa of windows hidden at random is
+//! below 0, and 0 is beyond chance. Rows that agree
 //! beyond chance show the layout of the facade itself, with gaps that are its own: there the matrix alone is believed, also when it
 //! says that nothing is hidden, and a window is added only where it is nearly as probable as not ([`SHOWN`]).
 
-use super::bare;
 use super::candidates::Candidates;
-use super::observation::{Observation, at_most, of};
+use super::observation::{Observation, of};
+use super::{at_most, bare};
 use crate::baselines::{Cells, cells};
 use crate::layout::lines::LatticeLine;
 use crate::layout::{Class, Element};
@@ -34,9 +36,9 @@ const ON_LINE: f64 = 0.35;
 const RARE: [f64; 2] = [0.2, 0.5];
 /// Share of the completed matrix in the probability of a cell, by agreement as before.
 const BELIEF: [f64; 2] = [0.5, 1.0];
-/// Shares of the filled cells that are seen: up to the first, single windows are hidden; from the second on, a region. By
-/// agreement as before.
-const SINGLE: [[f64; 2]; 2] = [[0.8, 0.95], [1.0, 1.05]];
+/// Shares of the filled cells that are seen, where rows agree by chance: up to the first, single windows are hidden; from the
+/// second on, a region. Where they agree beyond it no share speaks for a region.
+const SINGLE: [f64; 2] = [0.8, 0.95];
 /// Agreement of rows: up to the first that of chance, from the second on beyond it.
 const AGREEMENT: [f64; 2] = [-0.2, 0.0];
 /// Seen windows: up to the first they agree by chance, from the second on agreement says something.
@@ -132,8 +134,8 @@ impl Scattered {
         let filled = (cells.filled() as f64).max(seen);
         let share = seen / filled;
         let agreement = agreement(&cells);
-        let single = SINGLE.map(|limits| at_most(share, limits));
-        let single = mix(single, agreement) * reach(observation.partial, &cells);
+        let single = mix([at_most(share, SINGLE), 1.0], agreement);
+        let single = single * reach(observation.partial, &cells);
         let hidden = [cells.columns.len(), cells.rows.len()].map(|lines| {
             // Each line has a seen window because it would not be a line otherwise; the fewest that give every line one
             // say nothing of the share.
@@ -209,6 +211,7 @@ fn room(lines: &[LatticeLine], extent: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
 
     /// Windows of the cells of a picture with `#`, the upper row first; 20 wide, 30 high, 40 and 50 apart.
     fn partial(rows: &[&str], unknown: Option<Vec<Rect>>) -> PartialLayout {
@@ -277,6 +280,43 @@ mod tests {
     fn few_seen_windows_leave_every_line_possible() {
         let few = partial(&["....", ".#..", "...#", "...."], None);
         assert!(weighed_at(&few, 0, 2) > 0.3);
+    }
+
+    /// Rows of a picture of so many columns and rows.
+    fn picture(
+        columns: usize,
+        rows: usize,
+        mut on: impl FnMut(usize, usize) -> bool,
+    ) -> Vec<String> {
+        let mut row = |r| {
+            (0..columns)
+                .map(|c| if on(c, r) { '#' } else { '.' })
+                .collect()
+        };
+        (0..rows).map(&mut row).collect()
+    }
+
+    #[test]
+    fn windows_hidden_at_random_agree_less_than_kinds_of_rows() {
+        let mut rng = edifice_base::rng::stream(3, "agreement", 0);
+        let mut means = [0.0; 2];
+        for round in 0..2000 {
+            let (columns, rows) = (rng.random_range(1..12), rng.random_range(1..10));
+            let shown = rng.random_range(0.2..0.9);
+            let random = picture(columns, rows, |_, _| rng.random::<f64>() < shown);
+            // Each row is one of two kinds, which share no column; none is hidden.
+            let kinds = picture(2 * columns, rows + 1, |c, r| (c < columns) == (r % 2 == 0));
+            for (mean, rows) in means.iter_mut().zip([random, kinds]) {
+                let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+                let partial = partial(&rows, None);
+                let windows: Vec<Rect> = partial.observed.iter().map(|e| e.rect).collect();
+                let own = agreement(&cells(&partial, &windows));
+                assert!((0.0..=1.0).contains(&own), "{round}: {own} {rows:?}");
+                *mean += own / 2000.0;
+            }
+        }
+        println!("{means:?}");
+        assert!(means[0] < 0.3 && means[1] > 0.5, "{means:?}");
     }
 
     #[test]
