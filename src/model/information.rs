@@ -57,13 +57,17 @@ impl Information {
     }
 
     /// `(I + λ)⁻¹ gradient`, shortened where it is longer than one standard deviation of the score. A matrix that is
-    /// singular though a millionth of its mean variance is added gives the gradient as it is.
-    pub(crate) fn newton(&self, gradient: &[f64], penalty: f64) -> Vec<f64> {
+    /// singular though a millionth of its mean variance is added gives the gradient as it is. Weights that are held do not
+    /// move, and the others do as if these were no weights (the projected Newton step of Bertsekas 1982); their gradient is 0.
+    pub(crate) fn newton(&self, gradient: &[f64], penalty: f64, held: &[bool]) -> Vec<f64> {
         let n = self.n;
         let variance = (0..n).map(|i| self.mean[i * n + i]).sum::<f64>() / n.max(1) as f64;
         let mut factor = self.mean.clone();
         for i in 0..n {
             factor[i * n + i] += penalty + RIDGE * variance;
+            for j in (0..n).filter(|&j| j != i && (held[i] || held[j])) {
+                factor[i * n + j] = 0.0;
+            }
         }
         if !cholesky(&mut factor, n) {
             return gradient.to_vec();
@@ -116,15 +120,21 @@ mod tests {
             .iter()
             .map(|r| r[0] * shift[0] + r[1] * shift[1])
             .collect();
-        let step = information.newton(&gradient, 0.0);
+        let step = information.newton(&gradient, 0.0, &[false; 2]);
         for (s, t) in step.iter().zip(shift) {
             assert!((s - t).abs() < 1e-5, "{step:?}");
         }
         // A long one keeps its direction.
         let long: Vec<f64> = gradient.iter().map(|g| 1e3 * g).collect();
-        let step = information.newton(&long, 0.0);
+        let step = information.newton(&long, 0.0, &[false; 2]);
         assert!((step[0] / step[1] - shift[0] / shift[1]).abs() < 1e-4 && step[0] < 10.0);
+        // With the second held, the first moves by its own gradient over its own variance.
+        let step = information.newton(&[gradient[0], 0.0], 0.0, &[false, true]);
+        assert!((step[0] - gradient[0] / 1.0625).abs() < 1e-5 && step[1] == 0.0);
         // Without any variance the gradient itself.
-        assert_eq!(Information::new(2).newton(&gradient, 0.0), gradient);
+        assert_eq!(
+            Information::new(2).newton(&gradient, 0.0, &[false; 2]),
+            gradient
+        );
     }
 }

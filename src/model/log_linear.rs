@@ -44,6 +44,7 @@ use edifice_base::rng::Stream;
 pub struct LogLinear<X, F, S> {
     weights: usize,
     scales: Vec<f64>,
+    least: f64,
     features: F,
     sampler: S,
     state: std::marker::PhantomData<fn() -> X>,
@@ -60,10 +61,18 @@ where
         Self {
             weights,
             scales: vec![1.0; weights],
+            least: f64::NEG_INFINITY,
             features,
             sampler,
             state: std::marker::PhantomData,
         }
+    }
+
+    /// The same with no weight below `least`, which is at most 0, in the features' own units.
+    #[must_use]
+    pub fn at_least(mut self, least: f64) -> Self {
+        self.least = least;
+        self
     }
 
     /// Learns the weights from examples; see the module's page.
@@ -120,5 +129,65 @@ where
     }
     fn step(&self, state: &mut X, weights: &[f64], rng: &mut Stream) {
         (self.sampler)(state, &self.unscaled(weights), rng);
+    }
+    fn least(&self, k: usize) -> f64 {
+        self.least * self.scales[k]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::unwatched;
+    use rand::RngExt;
+
+    /// Two bits that exclude each other: with no weight below 0 that of the pair is 0, and the others are those of bits alone.
+    #[test]
+    fn weights_stay_above_their_least_value() {
+        let features = |x: &[bool; 2]| {
+            let own = |x: bool| f64::from(u8::from(x));
+            vec![own(x[0]), own(x[1]), 100.0 * own(x[0] && x[1])]
+        };
+        let sampler = move |x: &mut [bool; 2], weights: &[f64], rng: &mut Stream| {
+            for i in 0..2 {
+                let [off, on] = [false, true].map(|value| {
+                    x[i] = value;
+                    features(x)
+                        .iter()
+                        .zip(weights)
+                        .map(|(f, w)| f * w)
+                        .sum::<f64>()
+                });
+                x[i] = rng.random::<f64>() < 1.0 / (1.0 + (off - on).exp());
+            }
+        };
+        let states = [
+            (80, [true, false]),
+            (80, [false, true]),
+            (40, [true, true]),
+            (10, [false, false]),
+        ];
+        let data: Vec<[bool; 2]> = states.iter().flat_map(|(n, x)| vec![*x; 20 * n]).collect();
+        let fitted = |newton, least: f64| {
+            let settings = Settings {
+                newton,
+                moves: 3,
+                ..Settings::default()
+            };
+            let model = LogLinear::new(3, features, sampler).at_least(least);
+            model.fit(&data, &settings, 1, &unwatched).unwrap().weights
+        };
+        for newton in [true, false] {
+            let weights = fitted(newton, 0.0);
+            assert!((0.0..1e-6).contains(&weights[2]), "{newton} {weights:?}");
+        }
+        // Of 210, 120 have each bit alone; with the pair the log odds are those where the other is off.
+        let (alone, beside) = ((120.0_f64 / 90.0).ln(), (80.0_f64 / 10.0).ln());
+        let (weights, free) = (fitted(true, 0.0), fitted(true, -100.0));
+        for k in 0..2 {
+            assert!((weights[k] - alone).abs() < 0.1, "{weights:?}");
+            assert!((free[k] - beside).abs() < 0.2, "{free:?}");
+        }
+        assert!(free[2] < -1.0, "{free:?}");
     }
 }

@@ -4,6 +4,7 @@ mod bad_input;
 mod chain;
 mod coherence;
 mod commands;
+mod meaning;
 mod optimizers;
 mod policy;
 mod score;

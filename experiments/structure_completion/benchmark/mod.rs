@@ -3,7 +3,7 @@
 //! One number alone can be met without meaning: F1 at an overlap of one half rewards elements that stand beside their lines.
 //! So each completion is measured in several ways at once:
 //!
-//! - made grids, which have to come back perfectly, before anything else;
+//! - made grids, which have to come back perfectly, before anything else, and the score of the paper on layouts with a hole;
 //! - agreement: F1 at an intersection over union of 0.5, of 0.75, and the mean of 0.5, 0.55, ..., 0.95; without a mask also F1 of what
 //!   is added within the region that a mask would have told;
 //! - coherence: completions with an overlap, new windows that lack a column or a row, numbers of columns and of rows that are
@@ -31,6 +31,7 @@ mod against;
 mod columns;
 mod measures;
 mod models;
+mod preference;
 mod sanity;
 mod sheet;
 mod tables;
@@ -58,6 +59,7 @@ struct Unit<'a> {
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let models = models::models(ctx)?;
     sanity::run(ctx, &models)?;
+    preference::run(ctx, &models)?;
     let mut units: Vec<Unit> = Vec::new();
     let searched = ctx.budget() == Budget::Paper;
     for (k, tested) in models.tested.iter().enumerate() {

@@ -118,7 +118,7 @@ pub fn gradient<C: Chain>(
     Ok(mean_difference(&examples, &all_features(chain, &states)?))
 }
 
-/// Fits the weights to examples, starting at zero.
+/// Fits the weights to examples, starting at zero, each at [`Chain::least`] or above.
 ///
 /// Chains run in parallel, each with its own random stream, so that the result does not depend on
 /// the number of threads.
@@ -164,6 +164,7 @@ pub fn fit<C: Chain>(
     let mut examples = all_features(chain, data)?;
     let k = chain.weights();
     let mut weights = vec![0.0; k];
+    let least: Vec<f64> = (0..k).map(|i| chain.least(i).min(0.0)).collect();
     let mut information = Information::new(k);
     let (mut mean, mut mean_gap) = (vec![0.0; k], vec![0.0; k]);
     let mut clamped = data.to_vec();
@@ -214,15 +215,16 @@ pub fn fit<C: Chain>(
         let gap = mean_difference(&examples, &negatives);
         let ascent = weights.iter().zip(&gap);
         let mut step: Vec<f64> = ascent.map(|(w, g)| g - settings.penalty * w).collect();
+        let held = hold(&mut step, &weights, &least);
         if settings.newton || round + LAST >= settings.rounds {
             information.observe(&examples, &negatives, &gap);
         }
         if settings.newton {
-            step = information.newton(&step, settings.penalty);
+            step = information.newton(&step, settings.penalty, &held);
         }
         let rate = settings.rate / (1.0 + round as f64 / settings.decay);
-        for (w, s) in weights.iter_mut().zip(&step) {
-            *w += rate * s;
+        for ((w, s), least) in weights.iter_mut().zip(&step).zip(&least) {
+            *w = (*w + rate * s).max(*least);
         }
         trace.push(gap.iter().map(|g| g * g).sum::<f64>().sqrt());
         if round >= half {
@@ -250,8 +252,9 @@ pub fn fit<C: Chain>(
         ));
     }
     let pairs = mean_gap.iter().zip(&mean);
-    let slope: Vec<f64> = pairs.map(|(g, w)| g - settings.penalty * w).collect();
-    let left = information.newton(&slope, settings.penalty);
+    let mut slope: Vec<f64> = pairs.map(|(g, w)| g - settings.penalty * w).collect();
+    let held = hold(&mut slope, &mean, &least);
+    let left = information.newton(&slope, settings.penalty, &held);
     // The gain of a further Newton step, to second order.
     let shortfall = 0.5 * slope.iter().zip(&left).map(|(s, l)| s * l).sum::<f64>();
     Ok(Fitted {
@@ -266,6 +269,19 @@ pub fn fit<C: Chain>(
         },
         shortfall,
     })
+}
+
+/// The weights at their least value that the gradient would take below it: their gradient becomes 0.
+fn hold(gradient: &mut [f64], weights: &[f64], least: &[f64]) -> Vec<bool> {
+    let held = weights.iter().zip(least).zip(gradient);
+    held.map(|((w, least), g)| {
+        let held = *w <= *least && *g < 0.0;
+        if held {
+            *g = 0.0;
+        }
+        held
+    })
+    .collect()
 }
 
 /// Moves the hidden parts of examples; false where nothing is hidden.

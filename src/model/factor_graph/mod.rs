@@ -64,6 +64,11 @@ pub trait Chain: Sync {
     fn clamp(&self, _: &mut Self::State, _: &[f64], _: &mut Stream) -> bool {
         false
     }
+
+    /// Least value that weight `k` may have: none unless overridden, and at most 0, where fits start.
+    fn least(&self, _: usize) -> f64 {
+        f64::NEG_INFINITY
+    }
 }
 
 /// A proposal for Metropolis-Hastings, and with it a [`Chain`] through [`Metropolis`].

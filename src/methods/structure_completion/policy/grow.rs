@@ -125,18 +125,13 @@ fn label<R: Rng>(
     if rng.random::<f64>() < policy.0[4] {
         return (own.0, own.1, false);
     }
-    let from = match policy.option(5, 6, rng) {
-        0 => &problem.observed,
-        1 => &problem.database,
+    let label = match policy.option(5, 6, rng) {
+        0 => problem.observed_label(rng),
+        1 => problem.database_label(rng),
         _ => return (own.0, own.1, true),
     };
-    match from.len() {
-        0 => (own.0, own.1, false),
-        n => {
-            let exemplar = &from[rng.random_range(0..n)];
-            (exemplar.class, exemplar.size, false)
-        }
-    }
+    let (class, size) = label.map_or(own, |label| (label.class, label.size));
+    (class, size, false)
 }
 
 /// Spacing between the seed and the new element.

@@ -19,7 +19,9 @@
 //! - Ties in rank are broken at random. A direction that fails falls to the next of its order.
 //! - Concave fill: any of the four directions, as long as the new centre is inside the grid's box.
 //! - A copied label copies the seed's size; other labels come with the size of an observed element, or of one of the
-//!   database relative to the mean window. Without observed spacings the database's ratio of spacing to
+//!   database relative to the mean window. One of the database that would be in a grid with an observed element is the same
+//!   label and has its size. Labels of the database are drawn with the probabilities of the global consistency set of what is
+//!   observed (Sec. 4.3). Without observed spacings the database's ratio of spacing to
 //!   size serves. The random offset has a standard deviation of a tenth of the spacing; snapping
 //!   reaches 0.3 of the size. An empty place blocks, and may be extended.
 //! - γ = 1 and a reward only at the end: its value does not matter.
@@ -33,6 +35,7 @@ mod model;
 mod optimize;
 mod problem;
 mod process;
+mod ranked;
 mod tried;
 
 pub use grow::grow;
@@ -40,6 +43,7 @@ pub use model::{PaperModel, WEIGHTS, weight_states};
 pub use optimize::{Budget, Found, optimize};
 pub use problem::CompletionProblem;
 pub use process::{Growth, rollouts};
+pub use ranked::ranked_weights;
 
 use std::borrow::Cow;
 

@@ -5,6 +5,7 @@ use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use super::optimize::{Budget, optimize};
+use super::ranked::ranked_weights;
 use super::{CompletionProblem, PARAMETERS, Policy, grow};
 use crate::layout::{Class, Layout};
 use crate::partial::PartialLayout;
@@ -15,8 +16,7 @@ use edifice_base::{Progress, Watch, Watched};
 use edifice_model::ModelError;
 use edifice_model::factor_graph::Settings;
 
-/// Facades that weights are learnt from, and facades that policies are learnt on.
-const WEIGHT_FACADES: usize = 100;
+/// Facades that policies are learnt on.
 const POLICY_FACADES: usize = 12;
 /// Larger facades are left out of these two where there are smaller ones.
 const LARGEST: usize = 150;
@@ -24,7 +24,7 @@ const LARGEST: usize = 150;
 const POLICIES: usize = 10;
 /// Sweeps over a block of a negative.
 const SWEEPS: usize = 2;
-/// Settings of the contrastive divergence by which [`PaperModel::train`] learns. It stops early, near the prior: the
+/// Settings of [`PaperModel::unbiased_weights`] for a database of facades. It stops early, near the prior: the
 /// facades of a database are more regular than any draw, so that weights that fit them best run off.
 pub const WEIGHTS: Settings = Settings {
     rounds: 60,
@@ -71,7 +71,7 @@ impl PaperModel {
     /// the policies those of the facades that were finished.
     ///
     /// # Errors
-    /// As [`ScoreModel::train`] and [`learn_weights`].
+    /// As [`ScoreModel::train`]; [`ModelError`] where weights diverge.
     pub fn train(layouts: &[Layout], seed: u64, watch: &Watch) -> Result<Self, ModelError> {
         let watched = Watched::new(watch);
         let mut model = Self::of_densities(layouts, seed)?;
@@ -83,14 +83,13 @@ impl PaperModel {
             chosen.retain(|l| l.elements.len() <= LARGEST);
         }
         chosen.shuffle(&mut stream(seed, "database", 0));
-        let states = weight_states(&chosen[..chosen.len().min(WEIGHT_FACADES)], seed);
-        model.score.weights =
-            Self::unbiased_weights(&model.score, &states, &WEIGHTS, seed, &watched.inner())?;
+        model.score.weights = ranked_weights(&chosen, seed, &watched.inner())?;
         model.learn_policies(&chosen, seed, &watched);
         Ok(model)
     }
 
-    /// Weights by contrastive divergence whose negatives are layouts of which a block was resampled given the rest.
+    /// Weights by contrastive divergence whose negatives are layouts of which a block was resampled given the rest: those of the
+    /// distribution of Eq. 15, by maximum likelihood. [`PaperModel::train`] learns others, which rank completions.
     ///
     /// # Errors
     /// As [`learn_weights`].

@@ -1,11 +1,15 @@
 //! The problem that a policy solves: the observed layout, its spacings, labels and grids.
 
+use rand::seq::IndexedRandom;
 use rand::{Rng, RngExt};
+use rand_distr::Distribution;
+use rand_distr::weighted::WeightedIndex;
 
 use super::growing::Growing;
 use super::model::{Exemplar, PaperModel};
 use crate::layout::{Class, Element};
 use crate::partial::PartialLayout;
+use crate::score::grid::SIZE_STEP;
 use crate::score::{TERMS, grids};
 
 /// Bounding box of a grid as it grows.
@@ -42,7 +46,9 @@ pub struct CompletionProblem<'a> {
     pub(super) spacings: [Vec<f64>; 2],
     /// Observed elements as (class, width, height), those of the database scaled to this facade.
     pub(super) observed: Vec<Exemplar>,
-    pub(super) database: Vec<Exemplar>,
+    database: Vec<Exemplar>,
+    /// How probable each label of the database is beside what is observed; none of an empty database.
+    weights_of_labels: Option<WeightedIndex<f64>>,
 }
 
 impl Extent {
@@ -103,12 +109,22 @@ impl CompletionProblem<'_> {
 
     /// Class and size of an observed element or of one of the database, each with probability one half.
     pub fn random_label<R: Rng>(&self, rng: &mut R) -> Option<(Class, [f64; 2])> {
-        let from = match rng.random::<bool>() && !self.observed.is_empty() {
-            true => &self.observed,
-            false => &self.database,
+        let label = match rng.random::<bool>() && !self.observed.is_empty() {
+            true => self.observed_label(rng),
+            false => self.database_label(rng),
         };
-        let at = rng.random_range(0..from.len().max(1));
-        from.get(at).map(|e| (e.class, e.size))
+        label.map(|e| (e.class, e.size))
+    }
+
+    /// A label that is observed.
+    pub(super) fn observed_label<R: Rng>(&self, rng: &mut R) -> Option<&Exemplar> {
+        self.observed.choose(rng)
+    }
+
+    /// A label of the database, from the global consistency set of what is observed (Sec. 4.3).
+    pub(super) fn database_label<R: Rng>(&self, rng: &mut R) -> Option<&Exemplar> {
+        let at = self.weights_of_labels.as_ref()?.sample(rng);
+        self.database.get(at)
     }
 }
 
@@ -118,7 +134,8 @@ impl<'a> CompletionProblem<'a> {
         let mut items = Vec::new();
         let mut spacings = [Vec::new(), Vec::new()];
         let facade = [partial.width, partial.height];
-        for (index, grid) in grids(partial.width, &partial.observed).iter().enumerate() {
+        let seen = grids(partial.width, &partial.observed);
+        for (index, grid) in seen.iter().enumerate() {
             for &member in &grid.members {
                 let element = partial.observed[member as usize];
                 items.push(Item::new(element, index as u32, false));
@@ -140,10 +157,16 @@ impl<'a> CompletionProblem<'a> {
         let mean =
             |axis: usize| of.iter().map(|e| e.size[axis]).sum::<f64>() / of.len().max(1) as f64;
         let unit = [mean(0), mean(1)];
-        let scaled = |e: &Exemplar| Exemplar {
-            class: e.class,
-            size: [e.size[0] * unit[0], e.size[1] * unit[1]],
+        let scaled = |e: &Exemplar| {
+            let size = [e.size[0] * unit[0], e.size[1] * unit[1]];
+            like_observed(e.class, size, &observed)
         };
+        let database: Vec<Exemplar> = model.exemplars.iter().map(scaled).collect();
+        let labels = database.iter().map(|e| (e.class, e.size));
+        let weights = model.score.label_weights(facade, &seen, labels);
+        // With no label of the set in the database, any.
+        let any = vec![1.0; database.len()];
+        let weights_of_labels = WeightedIndex::new(weights).or_else(|_| WeightedIndex::new(any));
         Self {
             model,
             weights: model.score.weights,
@@ -155,7 +178,22 @@ impl<'a> CompletionProblem<'a> {
             start: Growing::of_items(facade, items),
             spacings,
             observed,
-            database: model.exemplars.iter().map(scaled).collect(),
+            database,
+            weights_of_labels: weights_of_labels.ok(),
         }
     }
+}
+
+/// A label of the database, with the size of the observed element that would be in a grid with it, if there is one: both are one
+/// label. Of several it is the one of the nearest size.
+fn like_observed(class: Class, size: [f64; 2], observed: &[Exemplar]) -> Exemplar {
+    let step = |o: &Exemplar| {
+        let along = |axis: usize| (o.size[axis] / size[axis]).ln().abs();
+        along(0).max(along(1))
+    };
+    let near = observed
+        .iter()
+        .filter(|o| o.class == class && step(o) <= SIZE_STEP.ln());
+    let near = near.min_by(|a, b| step(a).total_cmp(&step(b)));
+    near.copied().unwrap_or(Exemplar { class, size })
 }

@@ -105,7 +105,10 @@ impl ScoreModel {
             }
             _ => {
                 let (area, door) = global::symmetry(grids, facade);
-                format!("{area:.3} of the area is symmetric, doors at {door:.2} of the width")
+                let door = door.map_or("no door".into(), |at| {
+                    format!("doors at {at:.2} of the width")
+                });
+                format!("{area:.3} of the area is symmetric, {door}")
             }
         }
     }

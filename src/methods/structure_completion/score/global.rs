@@ -26,8 +26,8 @@ pub(super) fn coverage(grids: &[Arc<Grid>], facade: [f64; 2]) -> f64 {
 }
 
 /// Share of the elements' area that has a mirror image, and the mean position of the doors from left (0)
-/// to right (1), 0 without a door (Eq. 11).
-pub(super) fn symmetry(grids: &[Arc<Grid>], facade: [f64; 2]) -> (f64, f64) {
+/// to right (1), none without a door (Eq. 11).
+pub(super) fn symmetry(grids: &[Arc<Grid>], facade: [f64; 2]) -> (f64, Option<f64>) {
     let area: f64 = grids.iter().map(|g| g.area).sum();
     let symmetric: f64 = grids.iter().map(|g| g.symmetric).sum();
     let doors = grids.iter().filter(|g| g.class == Class::Door);
@@ -37,10 +37,6 @@ pub(super) fn symmetry(grids: &[Arc<Grid>], facade: [f64; 2]) -> (f64, f64) {
         sum += n * grid.lines[0].iter().sum::<f64>() / grid.lines[0].len() as f64;
         count += n;
     }
-    let position = if count > 0.0 {
-        sum / count / facade[0]
-    } else {
-        0.0
-    };
+    let position = (count > 0.0).then(|| sum / count / facade[0]);
     (symmetric / area, position)
 }

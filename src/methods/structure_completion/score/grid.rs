@@ -3,7 +3,7 @@
 use crate::layout::{Class, Element};
 
 /// Elements of one class belong to different grids where their sizes differ by a greater factor: e^0.3.
-const SIZE_STEP: f64 = 1.349_858_807_576_003;
+pub(crate) const SIZE_STEP: f64 = 1.349_858_807_576_003;
 /// Centres are on different lines where they differ by more than this share of the mean size.
 const SAME_LINE: f64 = 0.35;
 /// A column is the mirror image of another up to this share of the mean size.

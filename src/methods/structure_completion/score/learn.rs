@@ -261,13 +261,15 @@ impl Sites {
 }
 
 /// Weights from their differences to 1.
-fn from_prior(differences: &[f64]) -> [f64; TERMS] {
-    std::array::from_fn(|k| 1.0 + differences[k])
+pub(crate) fn from_prior(differences: &[f64]) -> [f64; TERMS] {
+    // A weight at its least value is 0 but for rounding.
+    std::array::from_fn(|k| (1.0 + differences[k]).max(0.0))
 }
 
 /// Learns the weights of `model` from layouts; `sampler` changes a layout into its negative, given the weights. One that
 /// leaves `p(x; w)` invariant, as [`Sites::resample_block`] does, makes the update unbiased. The penalty of `settings`
-/// draws each weight to 1, at which the score is the sum of the log densities.
+/// draws each weight to 1, at which the score is the sum of the log densities. None becomes less than 0: what is probable in the
+/// database never speaks against a layout.
 ///
 /// # Errors
 /// As [`fit`](edifice_model::factor_graph::fit).
@@ -283,6 +285,8 @@ pub fn learn_weights<X: State>(
     let step = |x: &mut X, weights: &[f64], rng: &mut Stream| {
         sampler(x, &from_prior(weights), rng);
     };
-    let fitted = LogLinear::new(TERMS, features, step).fit(data, settings, seed, watch)?;
+    let fitted = LogLinear::new(TERMS, features, step)
+        .at_least(-1.0)
+        .fit(data, settings, seed, watch)?;
     Ok(from_prior(&fitted.weights))
 }

@@ -17,7 +17,9 @@
 //! - Equations 1 to 11 define ten functions; two are called `f_gc`. Coverage is `gv` here and has its own weight.
 //! - Sums of log densities are unbounded: each further grid with p > 1 would pay. Each density is taken relative to
 //!   that of a typical value of the database (the median, [`Training::typical`]), and is at most 0 and at
-//!   least [`LEAST`]: no function pays for grids that are more regular than real ones.
+//!   least [`LEAST`]: no function pays for grids that are more typical than real ones. Regularity and completeness, which tell a hole, are
+//!   relative to their most probable values, and a grid more regular than the most probable one counts as that.
+//! - Weights are at least 0, and those that a model is learnt with rank completions ([`ranked_weights`](super::policy::ranked_weights)).
 //! - Eq. 16 sums a function over all grids. The partition function then depends on the number of grids, and layouts
 //!   with other grids cannot be compared: a facade would gain by losing a grid. Here a feature is the mean over
 //!   grids (pairs), each counted by its elements; the densities are learnt with the same weights.
@@ -26,7 +28,8 @@
 //!   With one line `ed` and `gr` are left out, with one spacing `gr`.
 //! - Eq. 8 is ln 0 for facades of one coherence set of one type; one set scores 0 here.
 //! - Patterns count along both axes, for grids that share a line across; half a count for unseen ones.
-//! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the doors.
+//! - Alignment is a smoothed histogram for each of four ranges of the gap; symmetry likewise given the
+//!   doors, and one of its own for facades without (the paper has v = 0 there, a door at the left).
 //! - Symmetry is about the facade's vertical axis; mirror images are sought in the same grid.
 //! - Borders: the distances of both ends of each row and column of a grid from the facade's boundary, over the
 //!   grid's mean size; a mean over rows and columns. (With the border of the whole facade, one element at each
@@ -54,6 +57,7 @@ use self::pair::Pattern;
 use super::layout::{Class, Element};
 use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 pub use explain::TermExplanation;
+pub(crate) use learn::from_prior;
 pub use learn::{Sites, State, learn_weights};
 pub use state::{Change, Scored};
 pub use train::Training;
@@ -127,8 +131,8 @@ impl Term {
 
 /// Density of a ratio.
 type Ratio = Typical<ScalarMixture>;
-/// Density of a share, given a value.
-type Share = Conditional<Typical<SmoothHistogram>>;
+/// Density of a share.
+type Share = Typical<SmoothHistogram>;
 
 /// The densities of the scoring functions and their weights.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -136,14 +140,21 @@ pub struct ScoreModel {
     aspect: [Ratio; 4],
     spacing: [Ratio; 2],
     regularity: [Ratio; 2],
+    /// The most probable regularity along each axis: what is more regular counts as this. 0 in files of before.
+    #[serde(default)]
+    regular: [f64; 2],
     completeness: Ratio,
     /// Log probability of each seen pattern relative to the most frequent one, and of others.
     patterns: (Vec<(Pattern, f64)>, f64),
-    alignment: [Share; 2],
+    alignment: [Conditional<Share>; 2],
     compatibility: Compatibility,
     coverage: Ratio,
     border: [Ratio; 2],
-    symmetry: Share,
+    /// The symmetric share of a facade, given where its doors are.
+    symmetry: Conditional<Share>,
+    /// That of a facade without a door; none in files of before, in which it has a door at the left.
+    #[serde(default)]
+    doorless: Option<Share>,
     /// w, in the order of [`Term::ALL`].
     pub weights: [f64; TERMS],
 }
@@ -178,6 +189,22 @@ impl ScoreModel {
     /// `w · f`.
     pub fn score(&self, features: &[f64; TERMS]) -> f64 {
         dot(&self.weights, features)
+    }
+
+    /// Of each label, a class with a size, in a facade where some grids are seen: its probability by the global consistency set
+    /// (Sec. 4.3), up to a constant.
+    pub(super) fn label_weights(
+        &self,
+        facade: [f64; 2],
+        grids: &[Arc<Grid>],
+        labels: impl Iterator<Item = (Class, [f64; 2])>,
+    ) -> Vec<f64> {
+        let area = facade[0] * facade[1];
+        let probabilities = self.compatibility.element_types(grids, area);
+        let types = labels.map(|(class, size)| self.compatibility.element_type(class, size, area));
+        let types: Vec<usize> = types.collect();
+        let alike = |t: usize| types.iter().filter(|o| **o == t).count() as f64;
+        types.iter().map(|&t| probabilities[t] / alike(t)).collect()
     }
 
     /// Extracts the grids of a layout and computes all functions.
@@ -249,6 +276,7 @@ impl ScoreModel {
             }),
             per_axis(&|axis| {
                 let ratio = grid.deviation[axis]? / grid.extent(axis);
+                let ratio = ratio.max(self.regular[axis]);
                 Some(relative(&self.regularity[axis], ratio))
             }),
             relative(&self.completeness, grid.completeness()),
@@ -291,10 +319,14 @@ impl ScoreModel {
     fn global(&self, grids: &[Arc<Grid>], facade: [f64; 2]) -> [f64; 3] {
         let (sets, types) = self.compatibility.cover(grids, facade[0] * facade[1]);
         let (area, door) = global::symmetry(grids, facade);
+        let symmetry = match (door, &self.doorless) {
+            (None, Some(density)) => density,
+            _ => self.symmetry.given(door.unwrap_or(0.0)),
+        };
         [
             (1.0 - (sets as f64 - 1.0) / types as f64).ln(),
             relative(&self.coverage, global::coverage(grids, facade)),
-            relative(self.symmetry.given(door), area),
+            relative(symmetry, area),
         ]
     }
 }

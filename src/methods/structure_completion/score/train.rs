@@ -8,14 +8,22 @@ use super::grid::Grid;
 use super::{Ratio, ScoreModel, Share, TERMS, global, grids, pair};
 use crate::layout::Layout;
 use edifice_model::ModelError;
-use edifice_model::density::{Conditional, ScalarMixture, SmoothHistogram, Typical};
+use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHistogram, Typical};
 
 /// Ranges of the gap, or of the door position, that have their own density.
 const RANGES: usize = 4;
-/// Least standard deviations of the ratios' densities.
+/// Least standard deviations of densities: of aspect ratios and completeness.
 const FLOOR: f64 = 0.01;
-/// Least standard deviation of a density of regularity.
-const REGULARITY_FLOOR: f64 = 0.005;
+/// Of size over spacing, and of the covered share. One facade has few of these, and a mixture of some tens of values
+/// would have a peak at each.
+const SPACING_FLOOR: f64 = 0.1;
+const COVERAGE_FLOOR: f64 = 0.1;
+/// Of borders, in sizes of an element.
+const BORDER_FLOOR: f64 = 0.3;
+/// Of regularity, which is relative to the extent of a whole grid: a fifth of an element's width is a hundredth of it.
+const REGULARITY_FLOOR: f64 = 0.0005;
+/// Level at which only the most probable value of the database scores 0 ([`Training::typical`]).
+const MODE: f64 = 1.0;
 
 /// Values seen in the database, those of grids with the number of their elements.
 #[derive(Default)]
@@ -28,7 +36,10 @@ struct Seen {
     alignment: [Vec<(f64, f64)>; 2],
     coverage: Vec<(f64, f64)>,
     border: [Vec<(f64, f64)>; 2],
+    /// Position of the doors, and symmetric share.
     symmetry: Vec<(f64, f64)>,
+    /// Symmetric shares of facades without a door.
+    doorless: Vec<f64>,
 }
 
 impl Seen {
@@ -60,7 +71,10 @@ impl Seen {
         }
         self.coverage.push((global::coverage(grids, facade), 1.0));
         let (area, door) = global::symmetry(grids, facade);
-        self.symmetry.push((door, area));
+        match door {
+            Some(door) => self.symmetry.push((door, area)),
+            None => self.doorless.push(area),
+        }
     }
 
     /// Log probabilities relative to the most frequent pattern, half a count added to each and to what was never seen.
@@ -75,31 +89,50 @@ impl Seen {
 }
 
 /// A mixture, or the widest possible guess where the database shows no such value.
-fn mixture(values: &[(f64, f64)], floor: f64, settings: &Training) -> Result<Ratio, ModelError> {
+fn mixture(
+    values: &[(f64, f64)],
+    floor: f64,
+    typical: f64,
+    seed: u64,
+) -> Result<Ratio, ModelError> {
     let density = match values {
         [] => ScalarMixture::new(vec![1.0], vec![1.0], vec![1.0])?,
-        values => ScalarMixture::fit_weighted(values, floor, settings.seed)?,
+        values => ScalarMixture::fit_weighted(values, floor, seed)?,
     };
     let rows = values.iter().map(|(v, w)| (std::slice::from_ref(v), *w));
-    Ok(Typical::new(density, rows, settings.typical))
+    Ok(Typical::new(density, rows, typical))
 }
 
-/// Densities of a share given a value, or uniform ones.
-fn shares(pairs: &[(f64, f64)], bins: usize, settings: &Training) -> Result<Share, ModelError> {
-    let fit = |values: &[f64]| {
-        let smoothing = bins as f64 / 20.0;
-        let density = SmoothHistogram::fit(vec![0.0], vec![1.0], vec![bins], smoothing, values)?;
-        let rows = values.iter().map(|v| (std::slice::from_ref(v), 1.0));
-        Ok(Typical::new(density, rows, settings.typical))
-    };
+/// The most probable of some values, 0 of none.
+fn mode(density: &Ratio, values: &[(f64, f64)]) -> f64 {
+    let logs = values.iter().map(|(v, _)| (*v, density.log_density(&[*v])));
+    logs.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |l| l.0)
+}
+
+/// Density of a share, a uniform one without values.
+fn share(values: &[f64], bins: usize, typical: f64) -> Result<Share, ModelError> {
+    let spread: Vec<f64> = (0..bins).map(|i| (i as f64 + 0.5) / bins as f64).collect();
+    let values = if values.is_empty() { &spread } else { values };
+    let smoothing = bins as f64 / 20.0;
+    let density = SmoothHistogram::fit(vec![0.0], vec![1.0], vec![bins], smoothing, values)?;
+    let rows = values.iter().map(|v| (std::slice::from_ref(v), 1.0));
+    Ok(Typical::new(density, rows, typical))
+}
+
+/// Densities of a share given a value, or a uniform one.
+fn shares(
+    pairs: &[(f64, f64)],
+    bins: usize,
+    typical: f64,
+) -> Result<Conditional<Share>, ModelError> {
     match pairs {
         [] => {
             let spread: Vec<(f64, f64)> = (0..bins)
                 .map(|i| (0.0, (i as f64 + 0.5) / bins as f64))
                 .collect();
-            Conditional::fit(&spread, 1, fit)
+            Conditional::fit(&spread, 1, |values| share(values, bins, typical))
         }
-        pairs => Conditional::fit(pairs, RANGES, fit),
+        pairs => Conditional::fit(pairs, RANGES, |values| share(values, bins, typical)),
     }
 }
 
@@ -107,7 +140,7 @@ fn shares(pairs: &[(f64, f64)], bins: usize, settings: &Training) -> Result<Shar
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Training {
     /// Share of the database's values that are less probable than what counts as typical; at 1 only the
-    /// most probable value of all scores 0.
+    /// most probable value of all scores 0. Regularity and completeness are relative to their modes in any case.
     pub typical: f64,
     /// Seed of the mixtures' starts.
     pub seed: u64,
@@ -140,30 +173,38 @@ impl ScoreModel {
             return Err(ModelError::Empty { what: "layouts" });
         }
         let pooled: Vec<(f64, f64)> = seen.aspect.iter().flatten().copied().collect();
+        let Training { typical, seed } = *settings;
         let aspect = |class: usize| {
             let own = &seen.aspect[class];
-            mixture(if own.is_empty() { &pooled } else { own }, FLOOR, settings)
+            let values = if own.is_empty() { &pooled } else { own };
+            mixture(values, FLOOR, typical, seed)
         };
-        let both = |values: &[Vec<(f64, f64)>; 2], floor| -> Result<[Ratio; 2], ModelError> {
-            Ok([
-                mixture(&values[0], floor, settings)?,
-                mixture(&values[1], floor, settings)?,
-            ])
+        let both = |values: &[Vec<(f64, f64)>; 2], floor, typical| {
+            let one = |axis: usize| mixture(&values[axis], floor, typical, seed);
+            Ok::<_, ModelError>([one(0)?, one(1)?])
+        };
+        let regularity = both(&seen.regularity, REGULARITY_FLOOR, MODE)?;
+        let doorless: Vec<f64> = match seen.doorless.is_empty() {
+            // Without a facade that has none, as with any door.
+            true => seen.symmetry.iter().map(|s| s.1).collect(),
+            false => seen.doorless.clone(),
         };
         Ok(Self {
             aspect: [aspect(0)?, aspect(1)?, aspect(2)?, aspect(3)?],
-            spacing: both(&seen.spacing, FLOOR)?,
-            regularity: both(&seen.regularity, REGULARITY_FLOOR)?,
-            completeness: mixture(&seen.completeness, FLOOR, settings)?,
+            spacing: both(&seen.spacing, SPACING_FLOOR, typical)?,
+            regular: [0, 1].map(|axis| mode(&regularity[axis], &seen.regularity[axis])),
+            regularity,
+            completeness: mixture(&seen.completeness, FLOOR, MODE, seed)?,
             patterns: seen.patterns(),
             alignment: [
-                shares(&seen.alignment[0], 8, settings)?,
-                shares(&seen.alignment[1], 8, settings)?,
+                shares(&seen.alignment[0], 8, typical)?,
+                shares(&seen.alignment[1], 8, typical)?,
             ],
             compatibility: Compatibility::train(facades.iter().map(|(g, a)| (g.as_slice(), *a)))?,
-            coverage: mixture(&seen.coverage, FLOOR, settings)?,
-            border: both(&seen.border, FLOOR)?,
-            symmetry: shares(&seen.symmetry, 20, settings)?,
+            coverage: mixture(&seen.coverage, COVERAGE_FLOOR, typical, seed)?,
+            border: both(&seen.border, BORDER_FLOOR, typical)?,
+            symmetry: shares(&seen.symmetry, 20, typical)?,
+            doorless: Some(share(&doorless, 20, typical)?),
             weights: [1.0; TERMS],
         })
     }
@@ -174,11 +215,12 @@ impl ScoreModel {
     /// [`ModelError::Parameter`].
     pub fn check(&self) -> Result<(), ModelError> {
         let weights = self.weights.iter().all(|w| w.is_finite());
+        let regular = self.regular.iter().all(|r| *r >= 0.0);
         let logs = self.patterns.0.iter().map(|p| p.1);
         let patterns = logs.chain([self.patterns.1]).all(|log| log <= 0.0);
         let conditionals = [&self.alignment[0], &self.alignment[1], &self.symmetry];
         let whole = conditionals.iter().all(|c| c.is_whole());
-        match weights && patterns && whole {
+        match weights && regular && patterns && whole {
             true => Ok(()),
             false => Err(ModelError::parameter("score", "is out of range")),
         }
