@@ -47,7 +47,7 @@ pub struct CompletionProblem<'a> {
     /// Observed elements as (class, width, height), those of the database scaled to this facade.
     pub(super) observed: Vec<Exemplar>,
     database: Vec<Exemplar>,
-    /// How probable each label of the database is beside what is observed; none of an empty database.
+    /// Probability of each label of the database beside what is observed, up to a constant; none of an empty database.
     weights_of_labels: Option<WeightedIndex<f64>>,
 }
 
