@@ -140,13 +140,20 @@ pub fn ranked_weights(
         return Ok(weights);
     }
     let watched = Watched::new(watch);
+    // None once it was stopped.
     let others = |out: usize| {
+        if !watched.goes_on(Progress::stage("densities of folds")) {
+            return Ok(None);
+        }
         let rest = (0..chosen.len()).filter(|&i| fold(i, chosen.len()) != out);
         let rest: Vec<Layout> = rest.map(|i| chosen[i].clone()).collect();
-        PaperModel::of_densities(&rest, seed)
+        PaperModel::of_densities(&rest, seed).map(Some)
     };
     let models = (0..FOLDS.min(chosen.len())).map(others);
-    let models = models.collect::<Result<Vec<PaperModel>, ModelError>>()?;
+    let models = models.collect::<Result<Option<Vec<PaperModel>>, ModelError>>()?;
+    let Some(models) = models else {
+        return Ok(weights);
+    };
     // Each facade with as many of the tasks as there is room for.
     let mut pairs: Vec<(usize, Task)> = (0..chosen.len())
         .flat_map(|i| Task::ALL.map(|task| (i, task)))
@@ -162,7 +169,9 @@ pub fn ranked_weights(
             candidates: Vec::new(),
         };
         choice.add(&chosen[i].elements);
-        choice.draw(&mut rng);
+        if watched.goes_on(Progress::stage("random candidates")) {
+            choice.draw(&mut rng);
+        }
         choice
     };
     let mut choices: Vec<Choice> = pairs.par_iter().enumerate().map(choice).collect();
@@ -175,8 +184,13 @@ pub fn ranked_weights(
             .enumerate()
             .for_each(|(number, choice)| {
                 let mut rng = stream(seed, "candidates", (round * CHOICES + number) as u64);
-                choice.seek(weights, &mut rng, &watched.inner());
+                if watched.goes_on(Progress::of("weights", round as u64, ROUNDS as u64)) {
+                    choice.seek(weights, &mut rng, &watched.inner());
+                }
             });
+        if watched.is_stopped() {
+            break;
+        }
         weights = fitted(&choices, seed, &watched.inner())?;
     }
     Ok(weights)
