@@ -303,7 +303,9 @@ mod tests {
         for round in 0..2000 {
             let (columns, rows) = (rng.random_range(1..12), rng.random_range(1..10));
             let shown = rng.random_range(0.2..0.9);
-            let random = picture(columns, rows, |_, _| rng.random::<f64>() < shown);
+            let random = picture(columns, rows, |c, r| {
+                (c, r) == (0, 0) || rng.random::<f64>() < shown
+            });
             // Each row is one of two kinds, which share no column; none is hidden.
             let kinds = picture(2 * columns, rows + 1, |c, r| (c < columns) == (r % 2 == 0));
             for (mean, rows) in means.iter_mut().zip([random, kinds]) {
