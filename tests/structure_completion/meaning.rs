@@ -102,12 +102,12 @@ fn models_of_before_are_read() {
     let text = shipped_model().unwrap().to_json();
     let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
     let paper = &mut file["paper"]["score"];
-    let score_of = |name: &str, object: &mut serde_json::Value| {
+    let remove = |name: &str, object: &mut serde_json::Value| {
         assert!(object.as_object_mut().unwrap().remove(name).is_some());
     };
-    score_of("regular", paper);
-    score_of("doorless", paper);
-    score_of("grids", &mut paper["compatibility"]);
+    remove("regular", paper);
+    remove("doorless", paper);
+    remove("grids", &mut paper["compatibility"]);
     let old = Model::from_json(&file.to_string()).unwrap();
     let made = &grids::all(1)[0].0;
     assert!(score(&old.paper.unwrap().score, made, &made.elements).is_finite());

@@ -6,10 +6,12 @@
 //! simulated annealing under them, which finds the holes and heaps that a score should not prefer. The weights maximize
 //!
 //! ```text
-//! mean over facades and tasks of  w · f(x) - ln(exp(w · f(x)) + Σ_{c in C} exp(w · f(c)))  -  PENALTY / 2 |w - 1|²,   w >= 0
+//! mean over facades and tasks of  w · f(x) - ln(exp(w · f(x)) + Σ_{c in C} exp(w · f(c)))  -  λ / 2 Σ_k (s_k (w_k - 1))²,   w >= 0
 //! ```
 //!
-//! which is the likelihood of Eq. 15 restricted to the whole layout x and its candidates. It is concave. Densities that
+//! with f and w of ten values, s_k the standard deviation of feature k over the whole layouts, and λ = 0.2. The first part is the
+//! logarithm of Eq. 15 restricted to the whole layout x and its candidates. The sum is concave; it is climbed by Newton steps whose
+//! expectations are sampled. Densities that
 //! score a facade are learnt without it and its neighbours in the order of names, often of one street: in the densities of all, each facade is
 //! typical in every respect, and terms would count that only remember the facades.
 
@@ -44,7 +46,7 @@ const ROUNDS: usize = 3;
 const OPTIMIZED: usize = 10;
 /// Evaluations of an annealing.
 const ANNEALED: u64 = 2000;
-/// Of the ascent.
+/// Settings of the ascent.
 const ASCENT: Settings = Settings {
     rounds: 200,
     moves: 1,

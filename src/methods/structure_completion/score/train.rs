@@ -14,13 +14,14 @@ use edifice_model::density::{Conditional, LogDensity, ScalarMixture, SmoothHisto
 const RANGES: usize = 4;
 /// Least standard deviations of densities: of aspect ratios and completeness.
 const FLOOR: f64 = 0.01;
-/// Of size over spacing, and of the covered share. One facade has few of these, and a mixture of some tens of values
-/// would have a peak at each.
+/// Least standard deviations of densities of size over spacing and of the covered share. A facade gives few values of these, and
+/// a mixture of some tens of values would have a peak at each.
 const SPACING_FLOOR: f64 = 0.1;
 const COVERAGE_FLOOR: f64 = 0.1;
-/// Of borders, in sizes of an element.
+/// Least standard deviation of a density of borders, in sizes of an element.
 const BORDER_FLOOR: f64 = 0.3;
-/// Of regularity, which is relative to the extent of a whole grid: a fifth of an element's width is a hundredth of it.
+/// Least standard deviation of a density of regularity. A deviation is divided by the extent of a whole grid, so that one element
+/// that is visibly off its line gives some thousandths.
 const REGULARITY_FLOOR: f64 = 0.0005;
 /// Level at which only the most probable value of the database scores 0 ([`Training::typical`]).
 const MODE: f64 = 1.0;
@@ -126,12 +127,7 @@ fn shares(
     typical: f64,
 ) -> Result<Conditional<Share>, ModelError> {
     match pairs {
-        [] => {
-            let spread: Vec<(f64, f64)> = (0..bins)
-                .map(|i| (0.0, (i as f64 + 0.5) / bins as f64))
-                .collect();
-            Conditional::fit(&spread, 1, |values| share(values, bins, typical))
-        }
+        [] => Conditional::fit(&[(0.0, 0.5)], 1, |_| share(&[], bins, typical)),
         pairs => Conditional::fit(pairs, RANGES, |values| share(values, bins, typical)),
     }
 }
