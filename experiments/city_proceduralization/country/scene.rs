@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use edifice_io::city::earth;
+use edifice_io::city::region::Region;
 
 /// A tile's scene, as its tileset tells of it.
 pub(super) struct Scene {
@@ -37,6 +38,14 @@ impl Scene {
     pub(super) fn on_the_earth(&self) -> Option<[f64; 16]> {
         let middle = [self.cube[0], self.cube[1], 0.0];
         earth::place(self.system.as_deref()?, self.origin, middle)
+    }
+
+    /// The region of its volume, which `place` puts on the earth.
+    pub(super) fn region(&self, place: &[f64; 16]) -> Region {
+        // Its axes are those of the coordinates.
+        let half = |k: usize| self.cube[3 + 4 * k].abs();
+        let [low, high] = [-1.0, 1.0].map(|side| [0, 1, 2].map(|k| self.cube[k] + side * half(k)));
+        Region::around(place, low, high)
     }
 
     /// The corners of its volume.

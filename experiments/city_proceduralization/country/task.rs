@@ -211,6 +211,7 @@ impl<'a> Place<'a> {
             scenes.push(scene.ok_or_else(|| Error::content(&path, "no tileset of this program"))?);
         }
         let on_the_earth: Option<Vec<[f64; 16]>> = scenes.iter().map(Scene::on_the_earth).collect();
+        let is_on_the_earth = on_the_earth.is_some();
         let origin = scenes.first().map_or([0.0; 3], |s| s.origin);
         let places = on_the_earth.unwrap_or_else(|| {
             let beside = |s: &Scene| {
@@ -241,11 +242,23 @@ impl<'a> Place<'a> {
         let half = [0, 1, 2].map(|k| (high[k] - low[k]) / 2.0);
         let middle = [0, 1, 2].map(|k| (high[k] + low[k]) / 2.0);
         let error = error.max(half.iter().sum());
+        let regions = scenes
+            .iter()
+            .zip(&places)
+            .map(|(scene, place)| scene.region(place));
+        let region = regions
+            .reduce(|a, b| a.union(&b))
+            .filter(|_| is_on_the_earth);
+        let volume = match region {
+            Some(region) => json!({ "region": region.numbers() }),
+            None => {
+                json!({ "box": [middle[0], middle[1], middle[2], half[0], 0, 0, 0, half[1], 0, 0, 0, half[2]] })
+            }
+        };
         let tileset = json!({
             "asset": { "version": "1.1", "extras": { "unit": "m", "up": "z", "origin": origin } },
             "geometricError": error,
-            "root": { "geometricError": error, "refine": "ADD", "children": children, "boundingVolume": { "box":
-                [middle[0], middle[1], middle[2], half[0], 0, 0, 0, half[1], 0, 0, 0, half[2]] } },
+            "root": { "geometricError": error, "refine": "ADD", "children": children, "boundingVolume": volume },
         });
         Ok(tileset.to_string().into_bytes())
     }

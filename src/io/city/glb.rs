@@ -30,6 +30,9 @@ pub enum GlbError {
     /// The codec of numbers or triangles failed.
     #[error("meshoptimizer: {0}")]
     Codec(String),
+    /// A part of the city is where its reference system is not.
+    #[error("{0} knows no place on the earth for a part of the city")]
+    NoPlace(String),
 }
 
 impl From<meshopt::Error> for GlbError {

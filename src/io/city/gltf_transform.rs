@@ -13,6 +13,25 @@ pub(super) const IDENTITY: Matrix = [
     1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
 ];
 
+/// The matrix that moves.
+pub(super) const fn shift([x, y, z]: [f64; 3]) -> Matrix {
+    let mut matrix = IDENTITY;
+    (matrix[12], matrix[13], matrix[14]) = (x, y, z);
+    matrix
+}
+
+/// The inverse of a matrix that turns and moves.
+pub(super) fn rigid_inverse(m: &Matrix) -> Matrix {
+    let mut inverse = IDENTITY;
+    for column in 0..3 {
+        for row in 0..3 {
+            inverse[4 * column + row] = m[4 * row + column];
+            inverse[12 + row] -= m[4 * row + column] * m[12 + column];
+        }
+    }
+    inverse
+}
+
 /// Scale, then rotation (a quaternion x, y, z, w), then translation.
 pub(super) fn composed(t: Option<[f64; 3]>, r: Option<[f64; 4]>, s: Option<[f64; 3]>) -> Matrix {
     let [tx, ty, tz] = t.unwrap_or_default();

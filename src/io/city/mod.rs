@@ -45,6 +45,7 @@ mod obj_write;
 pub mod picture;
 mod pictures;
 pub mod proposal_json;
+pub mod region;
 mod shells;
 mod tile_boxes;
 pub mod tiles;

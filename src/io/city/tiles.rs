@@ -3,8 +3,10 @@
 //! The plan is halved along its longer side until a tile has at most the wanted number of instances; a building is in the tile
 //! of its first instance, whole. Each tile's coordinates are relative to its middle, so that 32 bits hold millimetres
 //! in a city of any size. From afar, up to [`BOXES`] times as many instances are drawn as boxes, in one tile that those of the
-//! templates replace; its geometric error is the largest distance between a box and what it stands for. The tileset is in the metres of the grammar's reference system, z up, its origin in the
-//! `extras` of the asset; where the reference system is known, the root's `transform` puts its middle on the earth ([`super::earth`]).
+//! templates replace; its geometric error is the largest distance between a box and what it stands for. The tileset is in the metres of the
+//! grammar's reference system, z up, its origin in the `extras` of the asset. Where the reference system is known, each content is
+//! put on the earth for itself ([`super::earth`]), so that the tileset bends with the earth; what a tile without content covers is then a
+//! region of longitudes, latitudes and heights, and `extras.at` of a tile tells where in the reference system the origin of its content is.
 //! Contents have normals and no origin.
 
 use serde_json::{Value, json};
@@ -12,6 +14,8 @@ use serde_json::{Value, json};
 use super::earth;
 use super::glb::{self, GlbError};
 use super::glb_compressed;
+use super::gltf_transform::{Matrix, rigid_inverse, shift};
+use super::region::Region;
 use super::tile_boxes::{box_errors, boxes};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
 
@@ -32,7 +36,7 @@ pub struct Settings {
     pub compress: bool,
     /// A coarse level: each instance as a box ([`BOXES`]).
     pub boxes: bool,
-    /// The root is put on the earth, where the reference system is known.
+    /// Contents are put on the earth, where the reference system is known.
     pub on_the_earth: bool,
 }
 
@@ -73,11 +77,15 @@ pub fn to_files(
     if groups.is_empty() {
         return Err(GlbError::Empty);
     }
+    let system = grammar.reference_system.as_deref();
+    let first = derivation.instances[groups[0][0]].at;
+    let is_known = |system: &&str| earth::place(system, grammar.origin, first).is_some();
     let mut tiler = Tiler {
         grammar,
         derivation,
         groups,
         settings,
+        system: system.filter(|_| settings.on_the_earth).filter(is_known),
         box_errors: match settings.boxes {
             true => box_errors(grammar, derivation),
             false => Vec::new(),
@@ -86,16 +94,11 @@ pub fn to_files(
         files: Vec::new(),
     };
     let all: Vec<usize> = (0..tiler.groups.len()).collect();
-    let (mut root, bounds) = tiler.tile(all, None)?;
-    let place = place(grammar, &bounds).filter(|_| settings.on_the_earth);
-    if let Some(transform) = place {
-        root = json!({ "boundingVolume": { "box": box_of(&bounds) }, "transform": transform,
-            "geometricError": extent(&bounds), "refine": "ADD", "children": [root] });
-    }
+    let (root, space) = tiler.tile(all, None)?;
     let document = json!({
         "asset": { "version": "1.1", "extras": { "name": grammar.name, "unit": "m", "up": "z",
             "origin": grammar.origin, "reference_system": grammar.reference_system } },
-        "geometricError": extent(&bounds),
+        "geometricError": extent(&space.bounds),
         "root": root,
     });
     let mut files = tiler.files;
@@ -103,20 +106,41 @@ pub fn to_files(
     Ok(files)
 }
 
-/// The place on the earth of a city within bounds, column by column, if its reference system is known.
-fn place(grammar: &InstanceGrammar, (low, high): &Bounds) -> Option<[f64; 16]> {
-    let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0];
-    let system = grammar.reference_system.as_deref()?;
-    earth::place(system, grammar.origin, middle)
+type Bounds = ([f64; 3], [f64; 3]);
+
+/// The space that a tile takes up.
+struct Space {
+    /// In the coordinates of the city.
+    bounds: Bounds,
+    /// On the earth, where its contents are put there.
+    region: Option<Region>,
 }
 
-type Bounds = ([f64; 3], [f64; 3]);
+impl Space {
+    fn union(&self, other: &Self) -> Self {
+        let both = self.region.zip(other.region);
+        Self {
+            bounds: union(&self.bounds, &other.bounds),
+            region: both.map(|(a, b)| a.union(&b)),
+        }
+    }
+
+    /// The bounding volume of a tile without a transform.
+    fn volume(&self) -> Value {
+        match &self.region {
+            Some(region) => json!({ "region": region.numbers() }),
+            None => json!({ "box": box_of(&self.bounds) }),
+        }
+    }
+}
 
 struct Tiler<'a> {
     grammar: &'a InstanceGrammar,
     derivation: &'a InstanceDerivation,
     groups: Vec<Vec<usize>>,
     settings: &'a Settings,
+    /// The reference system, if contents are put on the earth.
+    system: Option<&'a str>,
     /// Of each instance, if there is a coarse level.
     box_errors: Vec<f64>,
     /// The grammar of the coarse level.
@@ -125,13 +149,13 @@ struct Tiler<'a> {
 }
 
 impl Tiler<'_> {
-    /// A tile of groups, with the tiles below it, and its bounds. `coarse`: the error of the tile above it that is drawn by boxes, if
+    /// A tile of groups, with the tiles below it, and what it takes up. `coarse`: the error of the tile above it that is drawn by boxes, if
     /// there is one: what that draws is replaced at once.
     fn tile(
         &mut self,
         mut own: Vec<usize>,
         coarse: Option<f64>,
-    ) -> Result<(Value, Bounds), GlbError> {
+    ) -> Result<(Value, Space), GlbError> {
         let most = self.settings.most_instances.max(1);
         let members = self.members(&own);
         if members.len() <= most || own.len() == 1 {
@@ -152,50 +176,55 @@ impl Tiler<'_> {
         let right = own.split_off(own.len() / 2);
         let (first, a) = self.tile(own, error)?;
         let (second, b) = self.tile(right, error)?;
-        let bounds = union(&a, &b);
+        let space = a.union(&b);
         let error = error.unwrap_or_else(|| {
             let below = [&first, &second].map(|t| t["geometricError"].as_f64().unwrap_or(0.0));
             below
                 .into_iter()
-                .fold(ERROR_SHARE * extent(&bounds), f64::max)
+                .fold(ERROR_SHARE * extent(&space.bounds), f64::max)
         });
         let below = json!([first, second]);
         if is_coarse {
-            let bounds = union(&bounds, &self.bounds(&self.boxes, &members, true));
-            let (mut tile, _) = self.content(&members, &bounds, true)?;
+            let drawn = self.bounds(&self.boxes, &members, true);
+            let (mut tile, own) = self.content(&members, &union(&space.bounds, &drawn), true)?;
+            let space = space.union(&own);
             // The children stand where they stand; this content is moved.
-            let moved = tile["transform"].take();
-            let back = |k: usize| -moved[12 + k].as_f64().unwrap_or(0.0);
-            let children = json!([{ "boundingVolume": { "box": box_of(&bounds) }, "geometricError": error, "refine": "REPLACE",
-                "transform": shift([back(0), back(1), back(2)]), "children": below }]);
-            tile["transform"] = moved;
+            let frame = self.frame(middle(&own.bounds))?;
+            let children = json!([{ "boundingVolume": space.volume(), "geometricError": error, "refine": "REPLACE",
+                "transform": rigid_inverse(&frame), "children": below }]);
+            if space.region.is_some() {
+                tile["boundingVolume"] = space.volume();
+            }
             tile["refine"] = json!("REPLACE");
             tile["geometricError"] = json!(error);
             tile["children"] = children;
-            return Ok((tile, bounds));
+            return Ok((tile, space));
         }
         let refine = match coarse {
             Some(_) => "REPLACE",
             None => "ADD",
         };
-        let tile = json!({ "boundingVolume": { "box": box_of(&bounds) },
+        let tile = json!({ "boundingVolume": space.volume(),
             "geometricError": error, "refine": refine, "children": below });
-        Ok((tile, bounds))
+        Ok((tile, space))
     }
 
     fn members(&self, own: &[usize]) -> Vec<usize> {
         own.iter().flat_map(|&g| self.groups[g].clone()).collect()
     }
 
-    /// The largest distance of the boxes of instances from them.
+    /// The largest distance of the boxes of instances from them, in one content that does not bend with the earth.
     fn box_error(&self, members: &[usize]) -> f64 {
-        members
-            .iter()
-            .map(|&i| self.box_errors[i])
-            .fold(0.0, f64::max)
+        let errors = members.iter().map(|&i| self.box_errors[i]);
+        let (low, high) = self.bounds(self.grammar, members, false);
+        let bend = match self.system {
+            Some(_) => earth::bend((high[0] - low[0]).hypot(high[1] - low[1]) / 2.0),
+            None => 0.0,
+        };
+        errors.fold(0.0, f64::max) + bend
     }
 
-    fn leaf(&mut self, members: &[usize]) -> Result<(Value, Bounds), GlbError> {
+    fn leaf(&mut self, members: &[usize]) -> Result<(Value, Space), GlbError> {
         let bounds = self.bounds(self.grammar, members, false);
         if bounds.0[0] > bounds.1[0] {
             return Err(GlbError::Empty);
@@ -226,9 +255,9 @@ impl Tiler<'_> {
         members: &[usize],
         bounds: &Bounds,
         as_boxes: bool,
-    ) -> Result<(Value, Bounds), GlbError> {
+    ) -> Result<(Value, Space), GlbError> {
         let (low, high) = *bounds;
-        let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]];
+        let middle = middle(bounds);
         let mut part = self.derivation.part(members, middle);
         let mut grammar = self.grammar;
         if as_boxes {
@@ -241,14 +270,33 @@ impl Tiler<'_> {
             false => glb::tile_to_bytes(grammar, &part)?,
         };
         self.files.push((name.clone(), bytes));
-        let local = (
-            [0, 1, 2].map(|k| low[k] - middle[k]),
-            [0, 1, 2].map(|k| high[k] - middle[k]),
-        );
-        let tile = json!({ "boundingVolume": { "box": box_of(&local) }, "geometricError": 0,
-            "refine": "ADD", "transform": shift(middle), "content": { "uri": name } });
-        Ok((tile, *bounds))
+        let low = [0, 1, 2].map(|k| low[k] - middle[k]);
+        let high = [0, 1, 2].map(|k| high[k] - middle[k]);
+        let frame = self.frame(middle)?;
+        let region = self.system.map(|_| Region::around(&frame, low, high));
+        let mut tile = json!({ "boundingVolume": { "box": box_of(&(low, high)) }, "geometricError": 0,
+            "refine": "ADD", "transform": frame, "content": { "uri": name } });
+        if region.is_some() {
+            tile["extras"] = json!({ "at": middle });
+        }
+        let bounds = *bounds;
+        Ok((tile, Space { bounds, region }))
     }
+
+    /// The matrix that puts what stands at `middle`, a point of the city, into its place in the coordinates of the tileset.
+    fn frame(&self, middle: [f64; 3]) -> Result<Matrix, GlbError> {
+        let Some(system) = self.system else {
+            return Ok(shift(middle));
+        };
+        let origin = [0, 1, 2].map(|k| self.grammar.origin[k] + middle[k]);
+        let place = earth::place(system, origin, [0.0; 3]);
+        place.ok_or_else(|| GlbError::NoPlace(system.to_owned()))
+    }
+}
+
+/// The origin of the coordinates of a content: the middle of its ground.
+fn middle((low, high): &Bounds) -> [f64; 3] {
+    [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]]
 }
 
 fn union(a: &Bounds, b: &Bounds) -> Bounds {
@@ -256,13 +304,6 @@ fn union(a: &Bounds, b: &Bounds) -> Bounds {
         [0, 1, 2].map(|k| a.0[k].min(b.0[k])),
         [0, 1, 2].map(|k| a.1[k].max(b.1[k])),
     )
-}
-
-/// The matrix that moves, column by column.
-fn shift([x, y, z]: [f64; 3]) -> [f64; 16] {
-    [
-        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0,
-    ]
 }
 
 /// Centre and half axes.

@@ -2,7 +2,8 @@
 //!
 //! Read is the finest level: what no tile below replaces. Each content's buildings are those that [`super::gltf`] reads; tiles that this
 //! program has not written have buildings of their own, called by file and node. Where the tiles stand on the earth, coordinates become metres east, north and up of their
-//! middle, without a reference system; else they are those of the root, with the `origin` and `reference_system` of the asset's
+//! middle, without a reference system, unless this program has written at which coordinates of its reference system each content stands; else they are
+//! those of the root, with the `origin` and `reference_system` of the asset's
 //! `extras`, if it has them. Not read are implicit tilings, points, and contents on other machines, which are counted in a note.
 
 use std::path::{Component, Path, PathBuf};
@@ -12,10 +13,9 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::CityError;
-use super::earth::FLATTENING;
-use super::faceted::unit;
+use super::earth::{earth_centred, geodetic};
 use super::gltf;
-use super::gltf_transform::{IDENTITY, Matrix, applied, determinant, product};
+use super::gltf_transform::{IDENTITY, Matrix, applied, determinant, product, shift};
 use crate::json::parse_json;
 use crate::read_bytes;
 use edifice_base::{Error, Result};
@@ -48,6 +48,21 @@ struct Tile {
     #[serde(default)]
     children: Vec<Tile>,
     implicit_tiling: Option<Value>,
+    #[serde(default)]
+    extras: Value,
+}
+
+impl Tile {
+    /// The coordinates of its contents' origin in the reference system, if this program has written them.
+    fn at(&self) -> Option<[f64; 3]> {
+        serde_json::from_value(self.extras["at"].clone()).ok()
+    }
+
+    /// True if that is known of every content.
+    fn is_in_its_system(&self) -> bool {
+        let is_empty = self.content.is_none() && self.contents.is_empty();
+        (is_empty || self.at().is_some()) && self.children.iter().all(Self::is_in_its_system)
+    }
 }
 
 #[derive(Deserialize)]
@@ -79,6 +94,7 @@ pub fn read(path: &Path) -> Result<City> {
         },
         known: FxHashMap::default(),
         names_buildings: extras["origin"].is_array(),
+        is_in_its_system: extras["reference_system"].is_string() && tileset.root.is_in_its_system(),
         left: 0,
     };
     reader.tile(&tileset.root, &IDENTITY, false, path, 0)?;
@@ -106,6 +122,8 @@ struct Reader {
     known: FxHashMap<String, usize>,
     /// True for tiles of this program, whose buildings have one identifier in all tiles.
     names_buildings: bool,
+    /// True if contents are put where they are in the reference system, not on the earth.
+    is_in_its_system: bool,
     /// Tiles that are not read.
     left: usize,
 }
@@ -131,8 +149,10 @@ impl Reader {
         self.left += usize::from(tile.implicit_tiling.is_some());
         // Children replace what is coarser.
         if tile.children.is_empty() || !replaces {
+            let at = tile.at().filter(|_| self.is_in_its_system);
+            let place = at.map_or(own, shift);
             for content in tile.content.iter().chain(&tile.contents) {
-                self.content(&content.uri, &own, path, depth)?;
+                self.content(&content.uri, &place, path, depth)?;
             }
         }
         let mut children = tile.children.iter();
@@ -234,7 +254,8 @@ fn batched(bytes: &[u8]) -> Option<(&[u8], [f64; 3])> {
     Some((bytes.get(start..)?, centre.unwrap_or([0.0; 3])))
 }
 
-/// Makes earth-centred coordinates metres east, north and up of the middle of the city.
+/// Makes earth-centred coordinates metres east, north and up of the middle of the city, as in a local map: heights are those above the
+/// ellipsoid, less that of the middle, so that the city does not bend with the earth.
 fn stand_upright(city: &mut City) {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in city.buildings.iter().flat_map(|b| &b.mesh.positions) {
@@ -243,19 +264,19 @@ fn stand_upright(city: &mut City) {
             high[k] = high[k].max(p[k]);
         }
     }
-    let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
-    // The normal of the ellipsoid, from its equation: not that of a sphere.
-    let flat = 1.0 - FLATTENING;
-    let up = [middle[0], middle[1], middle[2] / (flat * flat)];
-    let up = unit(up).unwrap_or([0.0, 0.0, 1.0]);
-    // At a pole every direction is south.
-    let east = unit(cross([0.0, 0.0, 1.0], up)).unwrap_or([1.0, 0.0, 0.0]);
+    let [longitude, latitude, height] = geodetic([0, 1, 2].map(|k| (low[k] + high[k]) / 2.0));
+    let middle = earth_centred(longitude, latitude, height);
+    let (sin, cos) = latitude.sin_cos();
+    let (s, c) = longitude.sin_cos();
+    let up = [cos * c, cos * s, sin];
+    let east = [-s, c, 0.0];
     let north = cross(up, east);
     for building in &mut city.buildings {
         let painted = building.paint.iter_mut().flat_map(|p| &mut p.corners);
         for p in building.mesh.positions.iter_mut().chain(painted) {
-            let from = sub(*p, middle);
-            *p = [dot(from, east), dot(from, north), dot(from, up)];
+            let [x, y, z] = geodetic(*p);
+            let from = sub(earth_centred(x, y, height), middle);
+            *p = [dot(from, east), dot(from, north), z - height];
         }
     }
     let note = "earth-centred coordinates were made metres east, north and up of the middle";
