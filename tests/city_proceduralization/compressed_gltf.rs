@@ -128,6 +128,40 @@ fn compression_that_promises_too_much_is_refused() {
     assert!(said.contains("bufferViews["), "{said}");
 }
 
+/// Of any length, empty and doubled ones among them, in any letters: each building has the one it had.
+#[test]
+fn random_identifiers_come_back() {
+    let grammar = made(6, Budget::Templates(20));
+    let mut rng = stream(3, "identifiers", 0);
+    for case in 0..200 {
+        let mut derivation = grammar.derive().unwrap();
+        let length = rng.random_range(0..40);
+        for (i, (id, _)) in derivation.buildings.iter_mut().enumerate() {
+            *id = match case % 4 {
+                0 => format!("{i:0length$}"),
+                1 => format!("{}-{i}", "é".repeat(rng.random_range(0..length + 1))),
+                2 => format!(
+                    "NL.Pand.{}",
+                    rng.random_range(10_u64.pow(15)..10_u64.pow(16))
+                ),
+                // One may be empty.
+                _ => "名".repeat(i),
+            };
+        }
+        let bytes = glb_compressed::to_bytes(&grammar, &derivation).unwrap();
+        let read = gltf::parse(&bytes, Path::new("city.glb")).unwrap();
+        let plain = glb::to_bytes(&grammar, &derivation, true).unwrap();
+        let plain = gltf::parse(&plain, Path::new("city.glb")).unwrap();
+        let ids = |c: &City| c.buildings.iter().map(|b| b.id.clone()).collect::<Vec<_>>();
+        assert_eq!(ids(&read), ids(&plain), "{case}");
+        let drawn = derivation.city(&grammar);
+        for building in &drawn.buildings {
+            let same = read.buildings.iter().find(|b| b.id == building.id).unwrap();
+            assert!(apart(same, building) < NEAR, "{case} {}", building.id);
+        }
+    }
+}
+
 /// Instances of random shapes and sizes, up to 300 m long and 6 km from the origin, flat ones and needles among them.
 #[test]
 fn random_instances_come_back_within_the_limit() {

@@ -9,6 +9,7 @@
 use serde_json::{Value, json};
 
 use super::faceted::Faceted;
+use super::gltf_properties;
 use super::pictures::media_type;
 use crate::glb_container::{TooLong, glb_container};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
@@ -142,6 +143,8 @@ pub(super) struct Glb {
     images: Vec<Value>,
     pub(super) meshes: Vec<Value>,
     nodes: Vec<Value>,
+    /// The property table of buildings, where it has their identifiers instead of the scene.
+    pub(super) properties: Option<Value>,
     /// True for the content of a tile.
     pub(super) is_tile: bool,
 }
@@ -162,6 +165,12 @@ impl Glb {
             is_tile: true,
             ..Self::default()
         }
+    }
+
+    /// The index of a view that is written later.
+    pub(super) fn view_to_come(&mut self) -> usize {
+        self.views.push(Value::Null);
+        self.views.len() - 1
     }
 
     /// Adds a node below the origin.
@@ -212,8 +221,10 @@ impl Glb {
                 .push(json!({ "name": "origin", "translation": [x, z, -y], "children": roots }));
             roots = vec![self.nodes.len() - 1];
         }
-        let ids: Vec<&str> = derivation.buildings.iter().map(|b| b.0.as_str()).collect();
-        extras["buildings"] = json!(ids);
+        if self.properties.is_none() {
+            let ids = derivation.buildings.iter().map(|b| b.0.as_str());
+            extras["buildings"] = ids.collect();
+        }
         let materials = self.materials();
         let mut buffers = vec![json!({ "byteLength": self.binary.len() })];
         buffers.append(&mut self.more_buffers);
@@ -236,8 +247,15 @@ impl Glb {
                 .collect();
             document["samplers"] = json!([{ "wrapS": CLAMP, "wrapT": CLAMP }]);
         }
+        let mut used = required.to_vec();
+        if let Some(properties) = self.properties {
+            document["extensions"] = json!({ gltf_properties::EXTENSION: properties });
+            used.push(gltf_properties::EXTENSION);
+        }
+        if !used.is_empty() {
+            document["extensionsUsed"] = json!(used);
+        }
         if !required.is_empty() {
-            document["extensionsUsed"] = json!(required);
             document["extensionsRequired"] = json!(required);
         }
         let text = document.to_string().into_bytes();

@@ -17,6 +17,7 @@ use super::CityError;
 use super::gltf_data::{self, Accessor, Buffer, Buffers, View};
 use super::gltf_instances::drawn;
 use super::gltf_mesh::{Mesh, MeshRead, Meshes};
+use super::gltf_properties;
 use super::gltf_textures::{Image, Material, Texture, looks};
 use super::gltf_transform::{
     IDENTITY, Matrix, applied, composed, determinant, product, upright_box,
@@ -58,6 +59,8 @@ struct Document {
     buffer_views: Vec<View>,
     #[serde(default)]
     buffers: Vec<Buffer>,
+    #[serde(default)]
+    extensions: Value,
     #[serde(default)]
     extensions_required: Vec<String>,
     #[serde(default)]
@@ -146,6 +149,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let looks = looks(materials, textures, images, &buffers, path).map_err(fault)?;
     let mut reader = Reader {
         document: &document,
+        buffers: &buffers,
         meshes: Meshes::new(&document.meshes, looks, &buffers),
         city: City {
             name: crate::file_stem(path),
@@ -164,6 +168,7 @@ type Fault = (String, CityError);
 /// The city as it is read.
 struct Reader<'a> {
     document: &'a Document,
+    buffers: &'a Buffers<'a>,
     meshes: Meshes<'a>,
     city: City,
     /// Identifiers of the buildings that instances belong to; they are the first buildings of the city.
@@ -193,9 +198,10 @@ impl Reader<'_> {
         let system = scene.extras.get("reference_system").and_then(Value::as_str);
         self.city.reference_system = system.map(str::to_owned);
         let ids = scene.extras.get("buildings").cloned();
-        self.ids = ids
-            .and_then(|ids| serde_json::from_value(ids).ok())
-            .unwrap_or_default();
+        let ids = ids.and_then(|ids| serde_json::from_value(ids).ok());
+        let properties = &self.document.extensions[gltf_properties::EXTENSION];
+        let ids = ids.or_else(|| gltf_properties::identifiers(properties, self.buffers));
+        self.ids = ids.unwrap_or_default();
         // Other programs call every scene "Scene".
         if !self.ids.is_empty() && !scene.name.is_empty() {
             self.city.name.clone_from(&scene.name);

@@ -33,6 +33,7 @@ pub mod gltf;
 mod gltf_data;
 mod gltf_instances;
 mod gltf_mesh;
+mod gltf_properties;
 mod gltf_textures;
 mod gltf_transform;
 pub mod grammar_file;

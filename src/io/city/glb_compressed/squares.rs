@@ -18,34 +18,53 @@ pub(super) struct Square {
     pub(super) buildings: Vec<Option<usize>>,
 }
 
-/// Squares that hold instances.
-#[derive(Default)]
-pub(super) struct Squares(BTreeMap<[i64; 2], Square>);
+impl Square {
+    fn add(&mut self, shape: &Shape, instance: &TemplateInstance) {
+        let mesh = &mut self.shape.mesh;
+        let first = mesh.positions.len() as u32;
+        let corners = shape.mesh.positions.iter().map(|&p| instance.place(p));
+        mesh.positions.extend(corners);
+        let triangles = shape.mesh.triangles.iter();
+        mesh.triangles
+            .extend(triangles.map(|t| t.map(|i| first + i)));
+        self.buildings
+            .resize(mesh.positions.len(), instance.building);
+        let normals = shape.normals.iter().map(|&n| placed(instance, n));
+        self.shape.normals.extend(normals);
+    }
+}
 
-impl Squares {
+/// Instances by squares.
+#[derive(Default)]
+pub(super) struct Squares<'a> {
+    shapes: Vec<Shape>,
+    /// Each instance with the index of its shape.
+    instances: BTreeMap<[i64; 2], Vec<(usize, &'a TemplateInstance)>>,
+}
+
+impl<'a> Squares<'a> {
     /// Adds the instances of a mesh, each to the square of its place.
-    pub(super) fn add(&mut self, shape: &Shape, instances: &[&TemplateInstance]) {
-        for instance in instances {
+    pub(super) fn add(&mut self, shape: Shape, instances: &[&'a TemplateInstance]) {
+        for &instance in instances {
             let cell = [0, 1].map(|k| (instance.at[k] / SIDE).floor() as i64);
-            let square = self.0.entry(cell).or_default();
-            let mesh = &mut square.shape.mesh;
-            let first = mesh.positions.len() as u32;
-            let corners = shape.mesh.positions.iter().map(|&p| instance.place(p));
-            mesh.positions.extend(corners);
-            let triangles = shape.mesh.triangles.iter();
-            mesh.triangles
-                .extend(triangles.map(|t| t.map(|i| first + i)));
-            square
-                .buildings
-                .resize(mesh.positions.len(), instance.building);
-            let normals = shape.normals.iter().map(|&n| placed(instance, n));
-            square.shape.normals.extend(normals);
+            let square = self.instances.entry(cell).or_default();
+            square.push((self.shapes.len(), instance));
         }
+        self.shapes.push(shape);
     }
 
-    /// All of them, in the order of their places.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Square> {
-        self.0.values()
+    /// The squares that hold instances, in the order of their places. Instances are in the order of their buildings, of which neighbours
+    /// follow each other: the codec takes few bytes where a corner is near the one before.
+    pub(super) fn all(mut self) -> impl Iterator<Item = Square> {
+        let squares = std::mem::take(&mut self.instances).into_values();
+        squares.map(move |mut instances| {
+            instances.sort_by_key(|(shape, instance)| (instance.building, *shape));
+            let mut square = Square::default();
+            for (shape, instance) in instances {
+                square.add(&self.shapes[shape], instance);
+            }
+            square
+        })
     }
 }
 

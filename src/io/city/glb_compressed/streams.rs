@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::super::glb::{FLOAT, Glb, GlbError, INDICES, UNSIGNED_INT, VERTICES, turned};
 use super::super::meshopt_views::EXTENSION;
+use super::identifiers;
 use super::shape::Shape;
 
 /// Component types of the standard.
@@ -21,8 +22,8 @@ const TURN_BITS: i32 = 14;
 /// Bits of each number of a normal.
 const NORMAL_BITS: i32 = 8;
 /// The version of the codec that the extension asks for; the level is of later versions.
-const VERSION: Option<i32> = Some(0);
-const LEVEL: i32 = 2;
+pub(super) const VERSION: Option<i32> = Some(0);
+pub(super) const LEVEL: i32 = 2;
 
 /// Numbers of a kind, and the view that holds them once there are some.
 struct Stream<T> {
@@ -49,10 +50,7 @@ impl<T> Stream<T> {
         component: u32,
         kind: &str,
     ) -> Value {
-        let view = *self.view.get_or_insert_with(|| {
-            file.views.push(Value::Null);
-            file.views.len() - 1
-        });
+        let view = *self.view.get_or_insert_with(|| file.view_to_come());
         let first = self.items.len();
         self.items.extend(items);
         json!({ "bufferView": view, "byteOffset": first * stride, "componentType": component,
@@ -146,8 +144,8 @@ impl Streams {
         file.accessor(accessor)
     }
 
-    /// Writes the views, compressed, and the buffer that they would be without compression.
-    pub(super) fn write(self, file: &mut Glb) -> Result<(), GlbError> {
+    /// Writes the views and identifiers of buildings, compressed, and the buffer that they would be without compression.
+    pub(super) fn write(self, file: &mut Glb, ids: &[&str]) -> Result<(), GlbError> {
         let mut out = Views { file, fallback: 0 };
         if let Some(view) = self.corners.view {
             let bytes = encode_vertex_buffer_level(&self.corners.items, LEVEL, VERSION)?;
@@ -195,6 +193,7 @@ impl Streams {
             let bytes = encode_vertex_buffer_level(&self.buildings.items, LEVEL, VERSION)?;
             out.write(view, self.buildings.items.len(), 4, &bytes, VERTEX);
         }
+        identifiers::write(&mut out, ids)?;
         let fallback = out.fallback;
         file.more_buffers.push(
             json!({ "byteLength": fallback, "extensions": { EXTENSION: { "fallback": true } } }),
@@ -209,23 +208,26 @@ fn bits(largest: f64) -> i32 {
 }
 
 /// Views as they are written.
-struct Views<'a> {
-    file: &'a mut Glb,
+pub(super) struct Views<'a> {
+    pub(super) file: &'a mut Glb,
     /// Bytes of the views before, without compression.
     fallback: usize,
 }
 
 /// The coding of a view: mode, filter and target.
-type Coding = (&'static str, Option<&'static str>, Option<u32>);
+pub(super) type Coding = (&'static str, Option<&'static str>, Option<u32>);
 
 const VERTEX: Coding = ("ATTRIBUTES", None, Some(VERTICES));
+/// Numbers that are no attributes of corners.
+pub(super) const PROPERTIES: Coding = ("ATTRIBUTES", None, None);
 const OCTAHEDRAL: Coding = ("ATTRIBUTES", Some("OCTAHEDRAL"), Some(VERTICES));
 const EXPONENTIAL: Coding = ("ATTRIBUTES", Some("EXPONENTIAL"), None);
 const QUATERNION: Coding = ("ATTRIBUTES", Some("QUATERNION"), None);
 const TRIANGLES: Coding = ("TRIANGLES", None, Some(INDICES));
 
 impl Views<'_> {
-    fn write(
+    /// Writes a view of `count` elements of `stride` bytes, of which `bytes` is the code.
+    pub(super) fn write(
         &mut self,
         view: usize,
         count: usize,
@@ -233,6 +235,8 @@ impl Views<'_> {
         bytes: &[u8],
         (mode, filter, target): Coding,
     ) {
+        // Views of properties begin at multiples of eight bytes.
+        self.fallback = self.fallback.next_multiple_of(8);
         let binary = &mut self.file.binary;
         binary.resize(binary.len().next_multiple_of(4), 0);
         let mut own = json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len(),
