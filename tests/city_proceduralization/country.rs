@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use edifice::io::city::obj;
+use edifice::io::city::earth::geodetic;
+use edifice::io::city::{cityjson, compact, obj};
 use edifice::rng::stream;
 use edifice_generators::city_proceduralization as synthetic;
 use rand::RngExt;
@@ -149,6 +150,79 @@ fn tiles_over_one_dictionary_are_the_city_whoever_made_them() {
         messages.contains("dictionary.city-grammar.bin"),
         "{messages}"
     );
+}
+
+#[test]
+fn a_country_of_a_known_system_stands_on_the_earth_within_its_region() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut city, _) = synthetic::city(16, 0.05, 3);
+    city.origin = [85_000.0, 446_000.0, 0.0];
+    city.reference_system = Some("EPSG:28992".to_owned());
+    std::fs::write(
+        folder.path().join("c.city.json"),
+        cityjson::to_string(&city),
+    )
+    .unwrap();
+    let args = [
+        "plan",
+        "c.city.json",
+        "--tile",
+        "150",
+        "--level",
+        "2",
+        "--scenes",
+        "-o",
+        "out",
+    ];
+    let key = line(folder.path(), &args)["key"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    line(folder.path(), &["work", "out"]);
+    let tiles = folder.path().join(format!("out/city-{key}/3dtiles"));
+    let index = std::fs::read(tiles.join("tileset.json")).unwrap();
+    let index: Value = serde_json::from_slice(&index).unwrap();
+    let numbers = |v: &Value| serde_json::from_value::<Vec<f64>>(v.clone()).unwrap();
+    let r = numbers(&index["root"]["boundingVolume"]["region"]);
+    // Latitude and longitude of Delft, in radians; a city 400 m wide is a ten thousandth of them.
+    assert!(
+        (r[0] - 0.0763).abs() < 2e-4 && (r[1] - 0.9076).abs() < 2e-4,
+        "{r:?}"
+    );
+    for child in index["root"]["children"].as_array().unwrap() {
+        let (m, cube) = (
+            numbers(&child["transform"]),
+            numbers(&child["boundingVolume"]["box"]),
+        );
+        for corner in 0..8 {
+            let p = [0, 1, 2]
+                .map(|k| cube[k] + cube[3 + 4 * k] * if corner >> k & 1 == 1 { 1.0 } else { -1.0 });
+            let [x, y, z] = geodetic(
+                [0, 1, 2].map(|i| (0..3).map(|k| m[4 * k + i] * p[k]).sum::<f64>() + m[12 + i]),
+            );
+            assert!(
+                (r[0]..=r[2]).contains(&x) && (r[1]..=r[3]).contains(&y),
+                "{r:?} {x} {y}"
+            );
+            assert!((r[4]..=r[5]).contains(&z), "{r:?} {z}");
+        }
+    }
+    // Read again it is upright, and has all buildings at their heights.
+    let read = edifice::io::city::read(&tiles.join("tileset.json")).unwrap();
+    let name = files(tiles.parent().unwrap()).into_keys().find(|name| {
+        let name = name.to_string_lossy();
+        name.ends_with(".bin") && !name.starts_with("dictionary")
+    });
+    let tile = tiles.parent().unwrap().join(name.unwrap());
+    let grammar = compact::read(&tile).unwrap();
+    let derived = grammar.derive().unwrap().city(&grammar);
+    assert_eq!(read.buildings.len(), city.buildings.len());
+    for building in &derived.buildings {
+        let same = read.buildings.iter().find(|b| b.id == building.id).unwrap();
+        let [a, b] = [same, building].map(|b| b.mesh.bounds().unwrap());
+        let heights = [a, b].map(|(low, high)| high[2] - low[2]);
+        assert!((heights[0] - heights[1]).abs() < 0.05, "{heights:?}");
+    }
 }
 
 #[test]
