@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::super::glb::GlbError;
 use super::super::gltf_properties::{CLASS, PROPERTY};
-use super::streams::{LEVEL, PROPERTIES, VERSION, Views};
+use super::views::{LEVEL, PROPERTIES, VERSION, Views};
 
 /// Bytes in a row, as elements of so many words of four bytes.
 const WORDS: usize = 16;

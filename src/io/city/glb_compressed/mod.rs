@@ -12,6 +12,7 @@ mod identifiers;
 mod shape;
 mod squares;
 mod streams;
+mod views;
 
 use serde_json::json;
 

@@ -6,10 +6,11 @@ use meshopt::{
 };
 use serde_json::{Value, json};
 
-use super::super::glb::{FLOAT, Glb, GlbError, INDICES, UNSIGNED_INT, VERTICES, turned};
+use super::super::glb::{FLOAT, Glb, GlbError, UNSIGNED_INT, turned};
 use super::super::meshopt_views::EXTENSION;
 use super::identifiers;
 use super::shape::Shape;
+use super::views::{EXPONENTIAL, LEVEL, OCTAHEDRAL, QUATERNION, TRIANGLES, VERSION, VERTEX, Views};
 
 /// Component types of the standard.
 const BYTE: u32 = 5120;
@@ -21,9 +22,6 @@ const WITHIN: f64 = 0.0125;
 const TURN_BITS: i32 = 14;
 /// Bits of each number of a normal.
 const NORMAL_BITS: i32 = 8;
-/// The version of the codec that the extension asks for; the level is of later versions.
-pub(super) const VERSION: Option<i32> = Some(0);
-pub(super) const LEVEL: i32 = 2;
 
 /// Numbers of a kind, and the view that holds them once there are some.
 struct Stream<T> {
@@ -146,7 +144,7 @@ impl Streams {
 
     /// Writes the views and identifiers of buildings, compressed, and the buffer that they would be without compression.
     pub(super) fn write(self, file: &mut Glb, ids: &[&str]) -> Result<(), GlbError> {
-        let mut out = Views { file, fallback: 0 };
+        let mut out = Views::new(file);
         if let Some(view) = self.corners.view {
             let bytes = encode_vertex_buffer_level(&self.corners.items, LEVEL, VERSION)?;
             out.write(view, self.corners.items.len(), 8, &bytes, VERTEX);
@@ -194,7 +192,7 @@ impl Streams {
             out.write(view, self.buildings.items.len(), 4, &bytes, VERTEX);
         }
         identifiers::write(&mut out, ids)?;
-        let fallback = out.fallback;
+        let fallback = out.fallback();
         file.more_buffers.push(
             json!({ "byteLength": fallback, "extensions": { EXTENSION: { "fallback": true } } }),
         );
@@ -205,55 +203,4 @@ impl Streams {
 /// Bits of numbers up to `largest` that are to be within [`WITHIN`].
 fn bits(largest: f64) -> i32 {
     (1.0 + (largest / WITHIN).max(1.0).log2().ceil()).clamp(8.0, 24.0) as i32
-}
-
-/// Views as they are written.
-pub(super) struct Views<'a> {
-    pub(super) file: &'a mut Glb,
-    /// Bytes of the views before, without compression.
-    fallback: usize,
-}
-
-/// The coding of a view: mode, filter and target.
-pub(super) type Coding = (&'static str, Option<&'static str>, Option<u32>);
-
-const VERTEX: Coding = ("ATTRIBUTES", None, Some(VERTICES));
-/// Numbers that are no attributes of corners.
-pub(super) const PROPERTIES: Coding = ("ATTRIBUTES", None, None);
-const OCTAHEDRAL: Coding = ("ATTRIBUTES", Some("OCTAHEDRAL"), Some(VERTICES));
-const EXPONENTIAL: Coding = ("ATTRIBUTES", Some("EXPONENTIAL"), None);
-const QUATERNION: Coding = ("ATTRIBUTES", Some("QUATERNION"), None);
-const TRIANGLES: Coding = ("TRIANGLES", None, Some(INDICES));
-
-impl Views<'_> {
-    /// Writes a view of `count` elements of `stride` bytes, of which `bytes` is the code.
-    pub(super) fn write(
-        &mut self,
-        view: usize,
-        count: usize,
-        stride: usize,
-        bytes: &[u8],
-        (mode, filter, target): Coding,
-    ) {
-        // Views of properties begin at multiples of eight bytes.
-        self.fallback = self.fallback.next_multiple_of(8);
-        let binary = &mut self.file.binary;
-        binary.resize(binary.len().next_multiple_of(4), 0);
-        let mut own = json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": bytes.len(),
-            "byteStride": stride, "count": count, "mode": mode });
-        binary.extend(bytes);
-        if let Some(filter) = filter {
-            own["filter"] = json!(filter);
-        }
-        let mut whole = json!({ "buffer": 1, "byteOffset": self.fallback, "byteLength": count * stride,
-            "extensions": { EXTENSION: own } });
-        if let Some(target) = target {
-            whole["target"] = json!(target);
-        }
-        if mode == "ATTRIBUTES" {
-            whole["byteStride"] = json!(stride);
-        }
-        self.file.views[view] = whole;
-        self.fallback += count * stride;
-    }
 }
