@@ -162,6 +162,16 @@ fn random_identifiers_come_back() {
     }
 }
 
+#[test]
+fn empty_identifiers_leave_no_view_empty() {
+    let grammar = made(6, Budget::Templates(20));
+    let mut derivation = grammar.derive().unwrap();
+    derivation.buildings.iter_mut().for_each(|b| b.0.clear());
+    let bytes = glb_compressed::to_bytes(&grammar, &derivation).unwrap();
+    assert!(!String::from_utf8_lossy(&bytes).contains("\"byteLength\":0,"));
+    assert!(gltf::parse(&bytes, Path::new("city.glb")).is_ok());
+}
+
 /// Instances of random shapes and sizes, up to 300 m long and 6 km from the origin, flat ones and needles among them.
 #[test]
 fn random_instances_come_back_within_the_limit() {

@@ -13,22 +13,26 @@ use serde_json::Value;
 /// Corners of compressed tiles are within so many metres of their places.
 const NEAR: f64 = 0.06;
 
-/// The grammar of a made city elsewhere.
-fn made(origin: [f64; 3], system: Option<&str>) -> InstanceGrammar {
+/// A made city elsewhere.
+fn elsewhere(origin: [f64; 3], system: Option<&str>) -> City {
     let (mut city, _) = synthetic::city(6, 0.02, 1);
     city.origin = origin;
     city.reference_system = system.map(str::to_owned);
+    city
+}
+
+fn grammar_of(city: &City) -> InstanceGrammar {
     let settings = Settings {
         mode: Mode::Best,
         budget: Budget::Templates(20),
         ..Settings::default()
     };
-    proceduralize(&city, &settings, &unwatched).unwrap().grammar
+    proceduralize(city, &settings, &unwatched).unwrap().grammar
 }
 
 /// The tileset of a made city elsewhere, and its contents by name.
 fn tileset(origin: [f64; 3], system: Option<&str>, compress: bool) -> (Value, Vec<(String, City)>) {
-    let grammar = made(origin, system);
+    let grammar = grammar_of(&elsewhere(origin, system));
     let mut settings = tiles::Settings::default();
     settings.most_instances = 20;
     settings.compress = compress;
@@ -98,20 +102,13 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
 /// A city of which every second building is 20 km farther to the east and the north: the earth is 63 m lower there than a plane.
 #[test]
 fn a_known_reference_system_puts_the_city_on_the_earth() {
-    let (mut city, _) = synthetic::city(6, 0.02, 1);
-    city.origin = [85_000.0, 446_000.0, 0.0];
-    city.reference_system = Some("EPSG:7415".to_owned());
+    let mut city = elsewhere([85_000.0, 446_000.0, 0.0], Some("EPSG:7415"));
     for building in city.buildings.iter_mut().step_by(2) {
         for p in &mut building.mesh.positions {
             *p = [p[0] + 2e4, p[1] + 2e4, p[2]];
         }
     }
-    let settings = Settings {
-        mode: Mode::Best,
-        budget: Budget::Templates(20),
-        ..Settings::default()
-    };
-    let grammar = proceduralize(&city, &settings, &unwatched).unwrap().grammar;
+    let grammar = grammar_of(&city);
     let derivation = grammar.derive().unwrap();
     let mut settings = tiles::Settings::default();
     settings.most_instances = 20;
@@ -171,7 +168,7 @@ fn a_known_reference_system_puts_the_city_on_the_earth() {
 
 /// The city of a tileset in a folder, and what its grammar derives.
 fn written_and_read(system: Option<&str>, compress: bool, is_of_others: bool) -> (City, City) {
-    let grammar = made([85_000.0, 446_000.0, 10.0], system);
+    let grammar = grammar_of(&elsewhere([85_000.0, 446_000.0, 10.0], system));
     let mut settings = tiles::Settings::default();
     settings.most_instances = 20;
     settings.compress = compress;

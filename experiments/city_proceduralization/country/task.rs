@@ -242,14 +242,12 @@ impl<'a> Place<'a> {
         let half = [0, 1, 2].map(|k| (high[k] - low[k]) / 2.0);
         let middle = [0, 1, 2].map(|k| (high[k] + low[k]) / 2.0);
         let error = error.max(half.iter().sum());
-        let regions = scenes
-            .iter()
-            .zip(&places)
-            .map(|(scene, place)| scene.region(place));
-        let region = regions
-            .reduce(|a, b| a.union(&b))
-            .filter(|_| is_on_the_earth);
-        let volume = match region {
+        let region = || {
+            let all = scenes.iter().zip(&places);
+            let regions = all.map(|(scene, place)| scene.region(place));
+            regions.reduce(|a, b| a.union(&b))
+        };
+        let volume = match is_on_the_earth.then(region).flatten() {
             Some(region) => json!({ "region": region.numbers() }),
             None => {
                 json!({ "box": [middle[0], middle[1], middle[2], half[0], 0, 0, 0, half[1], 0, 0, 0, half[2]] })

@@ -133,6 +133,31 @@ mod tests {
         [x.to_degrees(), y.to_degrees(), z]
     }
 
+    /// The example of EPSG Guidance Note 7-2, and the ends of the axes of WGS 84.
+    #[test]
+    fn published_places_are_where_they_are_published() {
+        let degrees = |d: f64, m: f64, s: f64| (d + m / 60.0 + s / 3600.0).to_radians();
+        let (longitude, latitude) = (degrees(2.0, 7.0, 46.38), degrees(53.0, 48.0, 33.82));
+        for (place, at) in [
+            (
+                [longitude, latitude, 73.0],
+                [3_771_793.968, 140_253.342, 5_124_304.349],
+            ),
+            ([0.0, 0.0, 0.0], [6_378_137.0, 0.0, 0.0]),
+            ([0.0, FRAC_PI_2, 0.0], [0.0, 0.0, 6_356_752.314_245]),
+        ] {
+            let found = earth_centred(place[0], place[1], place[2]);
+            let back = super::geodetic(at);
+            for k in 0..3 {
+                assert!((found[k] - at[k]).abs() < 1e-3, "{found:?}");
+                assert!(
+                    (back[k] - place[k]).abs() < [1e-9, 1e-9, 1e-3][k],
+                    "{back:?}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn geodetic_coordinates_lead_back_to_their_place() {
         let mut rng = stream(1, "places", 0);

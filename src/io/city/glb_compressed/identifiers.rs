@@ -10,9 +10,6 @@ use super::super::glb::GlbError;
 use super::super::gltf_properties::{CLASS, PROPERTY};
 use super::views::{LEVEL, PROPERTIES, VERSION, Views};
 
-/// Bytes in a row, as elements of so many words of four bytes.
-const WORDS: usize = 16;
-
 /// Adds identifiers to a file.
 pub(super) fn write(out: &mut Views, ids: &[&str]) -> Result<(), GlbError> {
     if ids.is_empty() {
@@ -25,18 +22,15 @@ pub(super) fn write(out: &mut Views, ids: &[&str]) -> Result<(), GlbError> {
         let end = u32::try_from(values.len());
         offsets.push(end.map_err(|_| GlbError::Codec("identifiers of over 4 GB".into()))?);
     }
-    let mut best: Option<(usize, usize, Vec<u8>)> = None;
-    for words in 1..=WORDS {
-        let (count, bytes) = elements(&values, words)?;
-        if best.as_ref().is_none_or(|b| bytes.len() < b.2.len()) {
-            best = Some((words, count, bytes));
+    let mut best = elements::<1>(&values)?;
+    for encode in LONGER {
+        let found = encode(&values)?;
+        if found.bytes.len() < best.bytes.len() {
+            best = found;
         }
     }
-    let Some((words, count, bytes)) = best else {
-        return Ok(());
-    };
     let [texts, ends] = [out.file.view_to_come(), out.file.view_to_come()];
-    out.write(texts, count, 4 * words, &bytes, PROPERTIES);
+    out.write(texts, best.count, best.stride, &best.bytes, PROPERTIES);
     let bytes = encode_vertex_buffer_level(&offsets, LEVEL, VERSION)?;
     out.write(ends, offsets.len(), 4, &bytes, PROPERTIES);
     out.file.properties = Some(json!({
@@ -47,31 +41,44 @@ pub(super) fn write(out: &mut Views, ids: &[&str]) -> Result<(), GlbError> {
     Ok(())
 }
 
-/// Bytes as elements of `words` words, filled up with zeros, encoded.
-fn elements(bytes: &[u8], words: usize) -> Result<(usize, Vec<u8>), GlbError> {
-    fn of<const N: usize>(bytes: &[u8]) -> Result<(usize, Vec<u8>), GlbError> {
-        let mut elements = vec![[[0u8; 4]; N]; bytes.len().div_ceil(4 * N)];
-        let all = elements.as_flattened_mut().as_flattened_mut();
-        all[..bytes.len()].copy_from_slice(bytes);
-        let encoded = encode_vertex_buffer_level(&elements, LEVEL, VERSION)?;
-        Ok((elements.len(), encoded))
-    }
-    match words {
-        1 => of::<1>(bytes),
-        2 => of::<2>(bytes),
-        3 => of::<3>(bytes),
-        4 => of::<4>(bytes),
-        5 => of::<5>(bytes),
-        6 => of::<6>(bytes),
-        7 => of::<7>(bytes),
-        8 => of::<8>(bytes),
-        9 => of::<9>(bytes),
-        10 => of::<10>(bytes),
-        11 => of::<11>(bytes),
-        12 => of::<12>(bytes),
-        13 => of::<13>(bytes),
-        14 => of::<14>(bytes),
-        15 => of::<15>(bytes),
-        _ => of::<WORDS>(bytes),
-    }
+/// Bytes, encoded as elements of a length.
+struct Encoded {
+    count: usize,
+    /// Bytes of an element.
+    stride: usize,
+    bytes: Vec<u8>,
+}
+
+type Encode = fn(&[u8]) -> Result<Encoded, GlbError>;
+
+/// The lengths of two to sixteen words: those that readers of this program take.
+const LONGER: [Encode; 15] = [
+    elements::<2>,
+    elements::<3>,
+    elements::<4>,
+    elements::<5>,
+    elements::<6>,
+    elements::<7>,
+    elements::<8>,
+    elements::<9>,
+    elements::<10>,
+    elements::<11>,
+    elements::<12>,
+    elements::<13>,
+    elements::<14>,
+    elements::<15>,
+    elements::<16>,
+];
+
+/// Bytes as elements of `N` words of four bytes, filled up with zeros, encoded.
+fn elements<const N: usize>(bytes: &[u8]) -> Result<Encoded, GlbError> {
+    // No view is empty, even if all identifiers are.
+    let mut elements = vec![[[0u8; 4]; N]; bytes.len().div_ceil(4 * N).max(1)];
+    let all = elements.as_flattened_mut().as_flattened_mut();
+    all[..bytes.len()].copy_from_slice(bytes);
+    Ok(Encoded {
+        count: elements.len(),
+        stride: 4 * N,
+        bytes: encode_vertex_buffer_level(&elements, LEVEL, VERSION)?,
+    })
 }
