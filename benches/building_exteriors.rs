@@ -14,7 +14,7 @@ use edifice::methods::building_exteriors::mass::{MassTarget, SearchLimits, searc
 use edifice::model::hierarchy::{Constant, Settings, learn};
 use edifice::rng::stream;
 use edifice::shape::solid::faces;
-use edifice_generators::building_exteriors::houses;
+use edifice_generators_building_exteriors::houses;
 use rayon::prelude::*;
 
 fn of_houses(c: &mut Criterion) {

@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use edifice::grammar::derive;
 use edifice::methods::facade_grammar::{Method, Settings, infer};
 use edifice::unwatched;
-use edifice_generators::facade_grammar as made;
+use edifice_generators_facade_grammar as made;
 
 fn settings(method: Method, iterations: u64) -> Settings {
     Settings {

@@ -1,4 +1,5 @@
-//! Digests of the sources of each crate of this workspace, for the keys of results: `OUT_DIR/sources.rs`.
+//! What the program is built from, for the keys of results and for what reports say of themselves: `OUT_DIR/sources.rs`, a value of
+//! `edifice_frame::Sources` with digests of the sources of each crate of this workspace and the commit.
 //!
 //! A crate's digest is SHA-256 over the names and bytes of the files of its folder (without its tests and without the folders of other
 //! crates), and its row names the crates of this workspace that it is built on. Of a package from a registry, whose neighbours are
@@ -27,16 +28,6 @@ fn main() -> Anyway<()> {
             println!("cargo::rerun-if-changed={}", folder.display());
             let others: Vec<&PathBuf> = crates.values().filter(|f| *f != folder).collect();
             let needs = needs(&std::fs::read_to_string(folder.join("Cargo.toml"))?);
-            let place = match name.as_str() {
-                "edifice-experiments" => Some("experiments"),
-                "edifice-generators" => Some("experiments/generators"),
-                _ => None,
-            };
-            if let Some(place) = place {
-                for (part, digest) in parts(folder, &others)? {
-                    rows += &format!("(\"{place}/{part}\", \"{digest}\", &[]),\n");
-                }
-            }
             let digest = digest(&files(folder, &others)?, folder)?;
             rows += &format!("({name:?}, {digest:?}, &{needs:?}),\n");
         }
@@ -45,17 +36,19 @@ fn main() -> Anyway<()> {
             hex(&Sha256::digest(foreign(&locked)))
         );
     }
-    if manifest.is_file() && root.join(".git").exists() {
-        tell_commit(&root);
-    }
+    let (commit, dirty) = match manifest.is_file() && root.join(".git").exists() {
+        true => commit(&root),
+        false => (None, None),
+    };
     let out = PathBuf::from(std::env::var("OUT_DIR")?).join("sources.rs");
-    std::fs::write(out, format!("&[\n{rows}]"))?;
+    let value = format!("Sources {{ crates: &[\n{rows}], commit: {commit:?}, dirty: {dirty:?} }}");
+    std::fs::write(out, value)?;
     Ok(())
 }
 
-/// Tells the commit that the sources were built from, and if they differ from it; nothing where git does not answer. A commit alone
+/// The commit that the sources were built from, and if they differ from it; nothing where git does not answer. A commit alone
 /// builds nothing anew: the program says which one its sources were last built at.
-fn tell_commit(root: &Path) {
+fn commit(root: &Path) -> (Option<String>, Option<bool>) {
     let git = |arguments: &[&str]| {
         let mut command = std::process::Command::new("git");
         let output = command.arg("-C").arg(root).args(arguments).output().ok()?;
@@ -64,9 +57,8 @@ fn tell_commit(root: &Path) {
     };
     // A version control that cannot be asked is as good as none.
     let Some(commit) = git(&["rev-parse", "HEAD"]) else {
-        return;
+        return (None, None);
     };
-    println!("cargo::rustc-env=EDIFICE_COMMIT={commit}");
     let sources = [
         "status",
         "--porcelain",
@@ -77,9 +69,8 @@ fn tell_commit(root: &Path) {
         "Cargo.toml",
         "Cargo.lock",
     ];
-    if let Some(changed) = git(&sources) {
-        println!("cargo::rustc-env=EDIFICE_DIRTY={}", !changed.is_empty());
-    }
+    let changed = git(&sources);
+    (Some(commit), changed.map(|files| !files.is_empty()))
 }
 
 /// Name and folder of each member of the workspace.
@@ -120,22 +111,6 @@ fn foreign(locked: &str) -> String {
     from_elsewhere.join("\n\n")
 }
 
-/// The parts of the experiments or the generators that results depend on beside the methods: each slug's own, and `frame`.
-fn parts(folder: &Path, others: &[&PathBuf]) -> Anyway<BTreeMap<String, String>> {
-    let mut parts: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
-    for file in files(folder, others)? {
-        let below = file.strip_prefix(folder)?;
-        let first = below.components().next().ok_or("a file has a name")?;
-        let first = first.as_os_str().to_string_lossy().into_owned();
-        let part = first.trim_end_matches(".rs").to_owned();
-        parts.entry(part).or_default().push(file);
-    }
-    parts
-        .into_iter()
-        .map(|(part, files)| Ok((part, digest(&files, folder)?)))
-        .collect()
-}
-
 /// Files below a folder, in order of name, without hidden ones, tests, and the folders of other crates.
 fn files(folder: &Path, others: &[&PathBuf]) -> Anyway<Vec<PathBuf>> {
     let mut found = Vec::new();
@@ -144,7 +119,7 @@ fn files(folder: &Path, others: &[&PathBuf]) -> Anyway<Vec<PathBuf>> {
         for entry in std::fs::read_dir(&next)? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let skipped = ["tests", "tests.rs", "target", "README.md", "sweeps"];
+            let skipped = ["tests", "tests.rs", "target", "README.md", "examples"];
             if name.starts_with('.') || skipped.contains(&&*name) {
                 continue;
             }

@@ -1,9 +1,10 @@
-//! The experiments: settings on one page per paper, one function per artefact.
+//! The experiments: settings on one page per paper, one function per artefact. Each paper is a crate of its own, all on `edifice-frame` (options,
+//! units, artefacts, the report) and `edifice-sweep`; this one lists them and knows what the program was built from.
 //!
 //! # How to add a paper
-//! 1. Write `experiments/<slug>.rs` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
+//! 1. Write the crate `experiments/<slug>/` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
 //!    table or figure (`table_1`, `figure_14`), a title, and a function `fn(&mut Context) -> Result<()>`.
-//! 2. Add `pub mod <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
+//! 2. Add `pub use edifice_experiments_<slug> as <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
 //! 3. Write `experiments/bin/<slug>.rs` and its `[[bin]]` in `experiments/Cargo.toml`: `fn main() -> std::process::ExitCode { edifice_experiments::main(&edifice_experiments::<slug>::EXPERIMENT) }`.
 //!
 //! # What an artefact's function does
@@ -27,30 +28,25 @@
 //! Results of a unit (`Answer`) are `Serialize + DeserializeOwned`: they go to the journal, and a run that was killed
 //! takes them from there. Time a unit inside its function (it runs on one thread), never around [`Context::units`].
 
-mod averages;
-mod frame;
-mod generic;
-pub mod layouts;
-mod parsed;
-pub mod peers;
-mod picture;
-mod roc;
-pub mod sweep;
-
-pub mod building_exteriors;
-pub mod city_proceduralization;
-pub mod facade_grammar;
-pub mod procedural_logic;
-pub mod structure_completion;
-
+use std::path::Path;
 use std::process::ExitCode;
 
-use sweep::Study;
+use edifice_base::Result;
 
-pub use frame::{
-    Args, Artefact, Budget, Context, Experiment, Journal, Options, Own, Pictured, Report,
-    ReportDocument, Shown, documents, run, run_to_end, shown, silence,
+pub use edifice_experiments_building_exteriors as building_exteriors;
+pub use edifice_experiments_city_proceduralization as city_proceduralization;
+pub use edifice_experiments_facade_grammar as facade_grammar;
+pub use edifice_experiments_generic as generic;
+pub use edifice_experiments_procedural_logic as procedural_logic;
+pub use edifice_experiments_structure_completion as structure_completion;
+pub use edifice_frame::{
+    Args, Artefact, Budget, Context, Experiment, Journal, Options, Own, Pictured, Program, Report,
+    ReportDocument, Shown, Sources, layouts, silence,
 };
+pub use edifice_peers as peers;
+pub use edifice_sweep as sweep;
+
+use sweep::Study;
 
 /// Every paper's experiment, in the order of the report.
 pub const ALL: &[&Experiment] = &[
@@ -76,12 +72,47 @@ const STUDIES: &[fn() -> Study] = &[
     structure_completion::study::complete,
 ];
 
+/// This program: all experiments, and what it was built from.
+pub static PROGRAM: Program = Program {
+    experiments: ALL,
+    sources: include!(concat!(env!("OUT_DIR"), "/sources.rs")),
+};
+
 /// Every method that sweeps can run.
 pub fn studies() -> Vec<Study> {
-    STUDIES.iter().map(|study| study()).collect()
+    STUDIES.iter().map(|study| study().of(&PROGRAM)).collect()
 }
 
 /// The `main` of a paper's own binary: parses the options, runs, prints the summary.
 pub fn main(experiment: &'static Experiment) -> ExitCode {
-    frame::main(experiment)
+    edifice_frame::main(&PROGRAM, experiment)
+}
+
+/// Runs experiments and writes the report.
+///
+/// # Errors
+/// As [`edifice_frame::run`].
+pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Report> {
+    edifice_frame::run(&PROGRAM, experiments, options)
+}
+
+/// Runs with Ctrl-C caught, and prints the summary to standard error.
+///
+/// # Errors
+/// As [`edifice_frame::run_to_end`].
+pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
+    edifice_frame::run_to_end(&PROGRAM, experiments, args)
+}
+
+/// All documents that pictures of a report show, by paper and artefact. Shipped ones need no report.
+pub fn shown(report: &Path) -> Vec<Shown> {
+    edifice_frame::shown(&PROGRAM, report)
+}
+
+/// The documents named `[PAPER/]ARTEFACT[/DOCUMENT]` of a report.
+///
+/// # Errors
+/// As [`edifice_frame::documents`].
+pub fn documents(wanted: &str, report: &Path) -> Result<Vec<ReportDocument>> {
+    edifice_frame::documents(&PROGRAM, wanted, report)
 }

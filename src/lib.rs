@@ -27,11 +27,11 @@
 //! # By paper
 //! | paper | module | experiment |
 //! | --- | --- | --- |
-//! | Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts* | [`methods::facade_grammar`] | `experiments/facade_grammar.rs` |
-//! | Weissenberg et al. 2013, *Is there a Procedural Logic to Architecture?* | [`methods::procedural_logic`] | `experiments/procedural_logic.rs` |
-//! | Fan et al. 2014, *Structure Completion for Facade Layouts* | [`methods::structure_completion`] | `experiments/structure_completion.rs` |
-//! | Demir et al. 2014, *Proceduralization of Buildings at City Scale* | [`methods::city_proceduralization`] | `experiments/city_proceduralization.rs` |
-//! | Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings* | [`methods::building_exteriors`] | `experiments/building_exteriors.rs` |
+//! | Wu et al. 2014, *Inverse Procedural Modeling of Facade Layouts* | [`methods::facade_grammar`] | `experiments/facade_grammar` |
+//! | Weissenberg et al. 2013, *Is there a Procedural Logic to Architecture?* | [`methods::procedural_logic`] | `experiments/procedural_logic` |
+//! | Fan et al. 2014, *Structure Completion for Facade Layouts* | [`methods::structure_completion`] | `experiments/structure_completion` |
+//! | Demir et al. 2014, *Proceduralization of Buildings at City Scale* | [`methods::city_proceduralization`] | `experiments/city_proceduralization` |
+//! | Fan and Wonka 2016, *A Probabilistic Model for Exteriors of Residential Buildings* | [`methods::building_exteriors`] | `experiments/building_exteriors` |
 //!
 //! # Conventions
 //! - Origin at the lower left, x to the right, y up; lengths in the facade's own unit.
@@ -57,8 +57,6 @@
 pub use edifice_base::{Ended, Error, Progress, Result, Watch, error, rng, unwatched};
 pub use edifice_cluster as cluster;
 pub use edifice_grammar as grammar;
-#[cfg(feature = "io")]
-pub use edifice_io as io;
 pub use edifice_layout as layout;
 pub use edifice_model as model;
 pub use edifice_optim as optim;
@@ -68,6 +66,13 @@ pub use edifice_scene as scene;
 pub use edifice_shape as shape;
 pub use nalgebra;
 pub use rand;
+
+/// File formats of facades, grammars, buildings, cities and scenes.
+#[cfg(feature = "io")]
+pub mod io {
+    pub use edifice_io::*;
+    pub use edifice_io_city as city;
+}
 
 /// The papers' methods, one crate for each paper; no method imports another.
 pub mod methods {

@@ -2,10 +2,10 @@
 
 use serde::Deserialize;
 
-use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::attributes;
 use edifice_building_exteriors::data::dataset;
+use edifice_frame::Context;
 use edifice_io::{building_csv, building_json, json, read_bytes};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::split;

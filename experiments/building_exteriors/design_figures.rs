@@ -3,7 +3,6 @@
 use super::held_out::{HELD_OUT, has_no_garage};
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::coding::Coding;
@@ -12,6 +11,7 @@ use edifice_building_exteriors::house::walls::walls_of_pieces;
 use edifice_building_exteriors::house::{Database, Generated, Joining, Options, model};
 use edifice_building_exteriors::mass::iou;
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_frame::Context;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{BoxStyle, Building, Side};

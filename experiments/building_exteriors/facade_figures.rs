@@ -2,7 +2,6 @@
 
 use super::data;
 use super::views::{BACK, FRONT, Panel, RIGHT, plan, sheet};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{GROUPS, Level, attributes};
@@ -13,6 +12,7 @@ use edifice_building_exteriors::house::{
 };
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, is_sound};
+use edifice_frame::Context;
 use edifice_optim::Step;
 use edifice_optim::genetic::Settings;
 use edifice_report::{Align, Chart, Figure, Row, Scale, Series, Table};

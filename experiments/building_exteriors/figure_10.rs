@@ -2,13 +2,13 @@
 
 use super::views::{FRONT, Panel, sheet};
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::wanted_rows;
 use edifice_building_exteriors::house::{Database, Generated, Options, generate};
 use edifice_cluster::adjusted_rand_index;
+use edifice_frame::Context;
 use edifice_model::hierarchy::{Hierarchy, learn};
 use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};

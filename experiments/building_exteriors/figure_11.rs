@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, settings};
-use crate::{Budget, Context};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::agreement::edge_agreement;
 use edifice_building_exteriors::attributes::{GROUPS, Level};
 use edifice_building_exteriors::network;
-use edifice_generators::building_exteriors as houses;
+use edifice_frame::{Budget, Context};
+use edifice_generators_building_exteriors as houses;
 use edifice_model::Table as Data;
 use edifice_model::hierarchy::{Settings, learn};
 use edifice_report::{Align, Chart, Figure, HeatMap, Row, Scale, Series, Table};

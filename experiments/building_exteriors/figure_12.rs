@@ -3,10 +3,10 @@
 use super::real_sets::{DELFT, rows_of};
 use super::reasons::{self, Means};
 use super::{data, settings};
-use crate::Context;
-use crate::averages::mean_and_error;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::data::{dataset, known};
+use edifice_frame::Context;
+use edifice_frame::averages::mean_and_error;
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{BACKGROUND, Contender, held_out, split};

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_frame::Context;
 use edifice_model::hierarchy::learn;
 use edifice_model::tables::compare::split;
 use edifice_model::tables::mixture::Baseline;

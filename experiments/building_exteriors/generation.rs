@@ -5,7 +5,6 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::mass_attributes;
@@ -15,7 +14,8 @@ use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{
     MASS, MassModel, MassTarget, SearchLimits, is_sound, least_z, max_z, nearest, search,
 };
-use edifice_generators::building_exteriors::wild;
+use edifice_frame::Context;
+use edifice_generators_building_exteriors::wild;
 use edifice_model::Table as Data;
 use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};

@@ -1,7 +1,6 @@
 //! Figures of generated houses: Fig. 6 and 15 of Fan and Wonka 2016.
 
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::possible_rows;
@@ -9,6 +8,7 @@ use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::{Database, Options, generate};
 use edifice_building_exteriors::mass::anneal::{AnnealSettings, anneal};
 use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
+use edifice_frame::Context;
 use edifice_io::building_json;
 use edifice_io::scene_png::picture_png;
 use edifice_model::hierarchy::learn;

@@ -5,7 +5,6 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::data;
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::facade::{FacadeTarget, furnish};
@@ -13,6 +12,7 @@ use edifice_building_exteriors::house::scene::{Placed, scene};
 use edifice_building_exteriors::house::solids::prisms;
 use edifice_building_exteriors::house::{Database, Joining, Options, generate};
 use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
+use edifice_frame::Context;
 use edifice_io::gltf;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::solid::faces;

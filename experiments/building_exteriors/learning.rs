@@ -1,8 +1,8 @@
 //! Seconds of the whole structure search (Sec. 7: 40 minutes for 200 buildings).
 
 use super::{data, settings};
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_model::hierarchy::{Settings, learn};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 

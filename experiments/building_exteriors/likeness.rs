@@ -5,15 +5,15 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::real_sets::{DELFT, rows_of};
-use crate::Context;
-use crate::averages::mean_and_error;
-use crate::roc::area_under_curve;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result, unwatched};
 use edifice_building_exteriors::attributes::AttributeRow;
 use edifice_building_exteriors::coding::{Coding, Observation, attribute_rows, coded};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_frame::Context;
+use edifice_frame::averages::mean_and_error;
+use edifice_frame::roc::area_under_curve;
 use edifice_io::read_bytes;
 use edifice_model::boosting::{Boosting, Settings};
 use edifice_model::em::Stopping;

@@ -2,12 +2,12 @@
 
 use super::views::{BACK, FRONT, Panel, plan, sheet};
 use super::{data, settings};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::wanted_rows;
 use edifice_building_exteriors::house::{Database, Generated, Options, generate};
+use edifice_frame::Context;
 use edifice_model::hierarchy::learn;
 use edifice_model::tables::mixture::Baseline;
 use edifice_report::{Align, Table};

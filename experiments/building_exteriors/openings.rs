@@ -20,7 +20,7 @@ use serde_json::{Map, Value};
 
 use super::data;
 use super::hidden_openings::{Hidden, ingolstadt};
-use crate::Context;
+use edifice_frame::Context;
 
 /// The model that ships, learnt from real houses.
 const MODEL: &str = "building_exteriors/real.houses.json";

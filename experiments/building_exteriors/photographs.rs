@@ -2,13 +2,13 @@
 
 use super::data;
 use super::views::{BACK, FRONT, Panel, RIGHT, is_opening, sheet};
-use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::design::{
     FacadeHouse, Facades, MarkedFacade, eaves, from_facades, in_metres,
 };
 use edifice_building_exteriors::house::{Database, Options};
 use edifice_building_exteriors::model_file::ModelFile;
+use edifice_frame::Context;
 use edifice_io::{facade_json, footprint, pixels};
 use edifice_report::{Align, Row, Table};
 use edifice_scene::render::Picture;

@@ -1,11 +1,11 @@
 //! Fig. 10 and Fig. 11 left on the real houses that ship: the styles found, and the learnt network.
 
 use super::{data, settings};
-use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS, GROUPS, Level};
 use edifice_building_exteriors::data::{dataset, known};
 use edifice_building_exteriors::network;
+use edifice_frame::Context;
 use edifice_io::building_csv;
 use edifice_model::hierarchy::{Hierarchy, learn};
 use edifice_model::tables::Dataset;

@@ -1,9 +1,9 @@
 //! Why ours is not the lowest of Fig. 12 on a set: on which attribute the likelihood is lost, and
 //! whether the loss goes when both models are learned without that attribute.
 
-use crate::Context;
-use crate::averages::mean_and_error;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
+use edifice_frame::averages::mean_and_error;
 use edifice_model::hierarchy::Settings;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{Contender, Judged, held_out, judge, split};

@@ -3,10 +3,10 @@
 use rand::RngExt;
 
 use super::data;
-use crate::Context;
-use crate::frame::memory::{peak_megabytes, reset_peak};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
+use edifice_frame::memory::{peak_megabytes, reset_peak};
 use edifice_model::em::Stopping;
 use edifice_model::hierarchy::{Priors, fit};
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series, Table};

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use super::data::measure;
 use super::generation::{Unit, answer, rows_of};
-use crate::averages::mean_and_error;
-use crate::sweep::{Better, Given, Outcome, Shared, Study};
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::house::Database;
+use edifice_frame::averages::mean_and_error;
 use edifice_io::building_json;
 use edifice_model::hierarchy::{Constant, Settings};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::{Contender, held_out, split};
+use edifice_sweep::{Better, Given, Outcome, Shared, Study};
 
 /// Crates that results depend on, with those that they are built on.
 const MADE_OF: &[&str] = &["edifice-building-exteriors", "edifice-io"];

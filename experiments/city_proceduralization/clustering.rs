@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{decompose, features};
 use edifice_cluster::{kmeans, lloyd, means, sum_of_squares, ward};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]

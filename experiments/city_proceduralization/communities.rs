@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::Context;
 use edifice_base::{Error, Result, Watched, unwatched};
 use edifice_city_proceduralization::{
     Mode,
@@ -13,6 +12,7 @@ use edifice_city_proceduralization::{
     type_graph::DistanceWeights,
 };
 use edifice_cluster::{girvan_newman, louvain};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 
 #[derive(Serialize, Deserialize)]

@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::ingolstadt;
-use crate::Context;
 use edifice_base::{Ended, Error, Result, Watch};
 use edifice_city_proceduralization::{Budget, Mode, Settings, judge, proceduralize};
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_frame::Context;
+use edifice_generators_city_proceduralization as synthetic;
 use edifice_grammar::instance::Kept;
-use edifice_io::city;
+use edifice_io_city as city;
 use edifice_report::Row;
 use edifice_shape::triangles::{City, repair};
 
@@ -38,7 +38,7 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
     let motifs = ctx.budget().choose(16, 500, 500);
     ctx.setting("motifs", motifs);
     let mut found = vec![(MADE.to_owned(), synthetic::city(motifs, 0.0, ctx.seed()).0)];
-    if ctx.budget() > crate::Budget::Smoke {
+    if ctx.budget() > edifice_frame::Budget::Smoke {
         for (name, file) in &REAL[..real] {
             if let Some(path) = ctx.real(file)? {
                 let city = match *name {
@@ -55,7 +55,7 @@ fn some_cities(ctx: &mut Context, real: usize) -> Result<Vec<(String, City)>> {
 /// The made city, and with `--data` midtown and Delft.
 pub(crate) fn three_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
     let mut found = cities(ctx)?;
-    if ctx.budget() > crate::Budget::Smoke {
+    if ctx.budget() > edifice_frame::Budget::Smoke {
         let (name, file) = REAL[3];
         if let Some(path) = ctx.real(file)? {
             found.push((name.to_owned(), city::read(&path)?));
@@ -66,7 +66,7 @@ pub(crate) fn three_cities(ctx: &mut Context) -> Result<Vec<(String, City)>> {
 
 /// The city with textures, with `--data`.
 pub(crate) fn chiba(ctx: &mut Context) -> Result<Option<City>> {
-    if ctx.budget() == crate::Budget::Smoke {
+    if ctx.budget() == edifice_frame::Budget::Smoke {
         return Ok(None);
     }
     let path = ctx.real(REAL[1].1)?;

@@ -2,12 +2,12 @@
 
 use super::photographs::Streets;
 use super::{data, judge};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::localization::{Landmark, landmarks};
 use edifice_city_proceduralization::{Mode, proceduralize};
-use edifice_io::city;
+use edifice_frame::Context;
+use edifice_io_city as city;
 use edifice_report::{Chart, Corner, Figure, Scale, Series};
 use edifice_shape::triangles::City;
 

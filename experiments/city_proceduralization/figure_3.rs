@@ -1,11 +1,11 @@
 //! Fig. 3: buildings taken apart into their components.
 
 use super::{data, exhibits};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Component, decompose};
-use edifice_io::city::picture::side_by_side;
+use edifice_frame::Context;
+use edifice_io_city::picture::side_by_side;
 use edifice_report::{Align, Table};
 use edifice_shape::triangles::TriangleMesh;
 

@@ -1,13 +1,13 @@
 //! Fig. 4: clusters of buildings, and what weights of features do to clusters of components.
 
 use super::{data, exhibits};
-use crate::Context;
 use edifice_base::{Error, Result, Watched, unwatched};
 use edifice_city_proceduralization::types::paper_types;
 use edifice_city_proceduralization::{
     Component, Mode, PAPER_FEATURES, Representative, Structure, proceduralize,
 };
-use edifice_io::city::picture::side_by_side;
+use edifice_frame::Context;
+use edifice_io_city::picture::side_by_side;
 use edifice_report::{Align, Table};
 use edifice_shape::triangles::TriangleMesh;
 

@@ -1,11 +1,11 @@
 //! Fig. 5: a rule, its mean transforms, and what it derives to.
 
 use super::data;
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Mode, proceduralize};
-use edifice_io::city::picture::side_by_side;
+use edifice_frame::Context;
+use edifice_io_city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
 /// Draws the pattern that holds the most buildings, and lists its successors.

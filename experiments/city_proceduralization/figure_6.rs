@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Detection, Mode, Structure, proceduralize};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 
 /// Nodes, edges, communities, modularity and tolerance of a level.

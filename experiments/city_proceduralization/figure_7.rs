@@ -1,10 +1,10 @@
 //! Fig. 7: quality against compression, for both representatives and for `best`.
 
 use super::data::{self, Measures};
-use crate::Context;
 use edifice_base::Result;
 use edifice_base::unwatched;
 use edifice_city_proceduralization::{Mode, Representative};
+use edifice_frame::Context;
 use edifice_report::{Chart, Corner, Figure, Scale, Series};
 
 /// Runs all levels of each curve.

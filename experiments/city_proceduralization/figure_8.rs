@@ -1,11 +1,11 @@
 //! Fig. 8: a city beside what its grammar derives to.
 
 use super::data;
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{Mode, judge, proceduralize};
-use edifice_io::city::picture::{Drawing, Drawn, View, bounds, draw};
+use edifice_frame::Context;
+use edifice_io_city::picture::{Drawing, Drawn, View, bounds, draw};
 
 /// Part of the width of a made city that is drawn: its buildings are small and far apart.
 const NEAR: f64 = 0.12;

@@ -1,13 +1,13 @@
 //! Fig. 9: a new city in the shape of letters, from a grammar's buildings.
 
 use super::{data, judge};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
-use edifice_io::city::grammar_file;
-use edifice_io::city::picture::side_by_side;
+use edifice_frame::Context;
+use edifice_io_city::grammar_file;
+use edifice_io_city::picture::side_by_side;
 use edifice_report::{Align, Table};
 
 /// Fills the shape "3DV" with each city's buildings, draws it beside the city, and judges it.

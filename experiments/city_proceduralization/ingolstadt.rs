@@ -6,9 +6,9 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use edifice_base::{Error, Result};
-use edifice_io::city::cityjson;
 use edifice_io::json::parse_json;
 use edifice_io::read_bytes;
+use edifice_io_city::cityjson;
 use edifice_shape::triangles::City;
 
 /// The file.

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::data;
-use crate::Context;
 use edifice_base::{Error, Result, unwatched};
 use edifice_city_proceduralization::morphology::{CityPlan, Morphology, Square};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_frame::Context;
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_io::city::picture::{Drawing, Drawn, View, draw};
+use edifice_io_city::picture::{Drawing, Drawn, View, draw};
 use edifice_report::{Align, Table};
 use edifice_shape::triangles::City;
 

@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Budget, Component, Mode, Settings, Structure, decompose, from_components,
 };
 use edifice_cluster::adjusted_rand_index;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_frame::Context;
+use edifice_generators_city_proceduralization as synthetic;
 use edifice_grammar::instance::Repeated;
 use edifice_report::{Align, Table};
 

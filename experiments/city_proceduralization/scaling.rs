@@ -5,17 +5,17 @@ use std::time::Instant;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::data;
-use crate::frame::Progress;
-use crate::frame::memory::{peak_megabytes, reset_peak};
-use crate::{Budget, Context};
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::{
     Decomposition, Mode, decompose, from_components, proceduralize,
 };
-use edifice_generators::city_proceduralization as synthetic;
-use edifice_io::city;
+use edifice_frame::Progress;
+use edifice_frame::memory::{peak_megabytes, reset_peak};
+use edifice_frame::{Budget, Context};
+use edifice_generators_city_proceduralization as synthetic;
+use edifice_io_city as city;
 use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use edifice_shape::triangles::{City, CityBuilding};
 

@@ -4,13 +4,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::data::{self, Measures};
-use crate::sweep::{Better, Given, Outcome, Shared, Study};
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization as proceduralization;
 use edifice_city_proceduralization::Budget;
-use edifice_generators::city_proceduralization as synthetic;
-use edifice_io::{city, json, read_bytes};
+use edifice_generators_city_proceduralization as synthetic;
+use edifice_io::{json, read_bytes};
+use edifice_io_city as city;
 use edifice_shape::triangles::City;
+use edifice_sweep::{Better, Given, Outcome, Shared, Study};
 
 /// The method that finds types.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,10 +1,10 @@
 //! Table 1: polygons, components, terminals and non-terminals of four levels.
 
 use super::data::{self, Measures};
-use crate::Context;
 use edifice_base::Result;
 use edifice_base::unwatched;
 use edifice_city_proceduralization::{Detection, Mode};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 
 /// Levels: numbers of halvings of the components' number.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::data;
-use crate::Context;
 use edifice_base::{Error, Result, unwatched};
 use edifice_city_proceduralization::morphology::{CityPlan, Square};
 use edifice_city_proceduralization::{Mode, proceduralize};
+use edifice_frame::Context;
 use edifice_grammar::instance::{Begins, Grid, InstanceGrammar};
-use edifice_io::city::compact;
-use edifice_io::city::picture::{Drawing, Drawn, View, draw};
+use edifice_io_city::compact;
+use edifice_io_city::picture::{Drawing, Drawn, View, draw};
 use edifice_report::{Align, Table};
 
 /// Buildings of the edit are so many times as long along their rows.

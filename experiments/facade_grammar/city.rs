@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use super::runs::{Question, Solver, solve};
 use super::{BEST, data, picture};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::city::{Settings, city};
+use edifice_frame::Context;
 use edifice_grammar::{Derivation, Grammar, Sampler, combine};
 use edifice_io::gltf;
 use edifice_io::scene_png::scene_png;

@@ -2,9 +2,9 @@
 
 use super::data::{self, Instance};
 use super::runs::{Answer, Question, Solver, least, mean, solve};
-use crate::{Budget, Context};
 use edifice_base::Result;
 use edifice_facade_grammar::Operations;
+use edifice_frame::{Budget, Context};
 use edifice_report::{Align, Row, Table};
 
 /// The methods, operations and metrics of a comparison.

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::data::{self, Instance};
 use super::iterations;
 use super::optimality::OPERATIONS;
-use crate::Context;
 use edifice_base::{Error, Result, unwatched};
 use edifice_facade_grammar::{Operations, Settings, infer};
+use edifice_frame::Context;
 use edifice_io::facade_json;
 use edifice_report::{Align, Row, Table};
 

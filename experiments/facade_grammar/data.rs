@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{Budget, Context, layouts};
 use edifice_base::{Error, Result, file};
-use edifice_generators::facade_grammar as made;
+use edifice_frame::{Budget, Context, layouts};
+use edifice_generators_facade_grammar as made;
 use edifice_grammar::{Grammar, derive};
 use edifice_io::{ReadOptions, facade_json, grammar_cga, grammar_json, read_label_grid};
 use edifice_layout::regularize::regularize_grid;
 use edifice_shape::{Facade, LabelGrid, decompose, splittable};
 
-pub use crate::layouts::{FIGURE_9, files, folder};
+pub use edifice_frame::layouts::{FIGURE_9, files, folder};
 
 /// Seed of the shipped layouts.
 pub const LAYOUT_SEED: u64 = 1;

@@ -1,8 +1,8 @@
 //! Fig. 10: the facades.
 
 use super::{data, picture};
-use crate::Context;
 use edifice_base::Result;
+use edifice_frame::Context;
 use edifice_report::{Figure, Row};
 
 /// Shows every shipped facade with its number of terminals.

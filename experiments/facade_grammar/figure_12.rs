@@ -6,8 +6,8 @@ use rand::SeedableRng;
 
 use super::runs::{Question, Solver, mean, solve};
 use super::{BEST, data, picture};
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_grammar::{derivation, derive_at, size_independent};
 use edifice_layout::resize::{ALIGN_REACH, ALIGN_TOLERANCE, align, resized};
 use edifice_report::{Align, Figure, Row, Table, Tile, Tiles};

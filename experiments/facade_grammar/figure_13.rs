@@ -3,8 +3,8 @@
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, solve};
 use super::{BEST, PAPER, data, joint_real, picture};
-use crate::Context;
 use edifice_base::Result;
+use edifice_frame::Context;
 use edifice_report::{Align, Figure, Row, Table};
 use edifice_shape::Facade;
 

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER, data};
-use crate::Context;
 use edifice_base::{Error, Progress, Result};
 use edifice_facade_grammar::{Method, Settings, infer};
+use edifice_frame::Context;
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 use edifice_shape::Facade;
 

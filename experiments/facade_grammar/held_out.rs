@@ -5,8 +5,8 @@ use edifice_grammar::parametric::{Code, Library, Member, Parse, Separate, SizeMo
 use edifice_grammar::same_tiling;
 use edifice_shape::Facade;
 
-use crate::parsed::Parsed;
-use crate::peers;
+use edifice_frame::Parsed;
+use edifice_peers as peers;
 
 /// Bits of each held-out facade.
 #[derive(Debug, Default)]

@@ -3,8 +3,8 @@
 use super::likeness::{Likeness, likeness};
 use super::references::{self, Judged};
 use super::runs::{Question, mean, solve};
-use crate::Context;
 use edifice_base::Result;
+use edifice_frame::Context;
 use edifice_grammar::Costs;
 use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 

@@ -13,8 +13,8 @@ use super::data::{files, stem};
 use super::held_out::HeldOut;
 use super::runs::mean;
 use super::told_apart::{Fold, area};
-use crate::averages::mean_and_error;
-use crate::{Budget, Context};
+use edifice_frame::averages::mean_and_error;
+use edifice_frame::{Budget, Context};
 
 /// Folds of the held-out bits.
 const FOLDS: usize = 5;

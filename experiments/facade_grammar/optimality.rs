@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::data::{self, FIGURE_9, Instance};
 use super::runs::{Question, Solver, solve};
 use super::{BEST, iterations};
-use crate::{Budget, Context};
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{BoundLimits, Operations, Settings, lower_bound};
+use edifice_frame::{Budget, Context};
 use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 
 /// The two sets of operations of Tables 1 and 2.

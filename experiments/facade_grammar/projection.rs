@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::data;
-use crate::{Budget, Context};
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Settings, infer};
+use edifice_frame::{Budget, Context};
 use edifice_grammar::{Costs, evaluate};
 use edifice_io::read_label_grid;
 use edifice_layout::regularize::{regularize_facade, regularize_grid};

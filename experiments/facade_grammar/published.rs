@@ -1,7 +1,7 @@
 //! The numbers that the paper printed, `datasets/facade_grammar/published.csv`.
 
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 
 /// The automatic methods of the paper's Tables 2 to 4, in their order.
 pub(crate) const AUTOMATIC: [&str; 4] = ["procedural_logic", "bayesian", "symmetry", "adp"];

@@ -4,8 +4,8 @@ use super::compare::Comparison;
 use super::published::Published;
 use super::runs::Solver;
 use super::{BEST, PAPER};
-use crate::Context;
 use edifice_facade_grammar::Method;
+use edifice_frame::Context;
 use edifice_report::{Align, Row, Table};
 
 /// Sets the ratio of average costs of each method to both configurations of ADP beside the ratio

@@ -5,9 +5,9 @@ use super::data::{self, FIGURE_9, Instance};
 use super::published::Published;
 use super::runs::{Answer, Question, Solver, least, mean, solve};
 use super::{BEST, PAPER, iterations};
-use crate::Context;
 use edifice_base::Result;
 use edifice_facade_grammar::{Exploit, Method, Protect, Readings};
+use edifice_frame::Context;
 use edifice_report::{Align, Bars, Figure, Row, Scale, Table};
 
 /// Facades of each real set, evenly spread.

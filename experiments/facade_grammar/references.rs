@@ -1,9 +1,9 @@
 //! Facades with grammars that people made, or could have made: what Tables 4 and 5 compare with.
 
 use super::data::{self, FIGURE_9};
-use crate::Context;
 use edifice_base::{Error, Result};
-use edifice_generators::facade_grammar::references::{Kind, referenced};
+use edifice_frame::Context;
+use edifice_generators_facade_grammar::references::{Kind, referenced};
 use edifice_grammar::Grammar;
 use edifice_io::grammar_cga;
 use edifice_shape::Facade;
@@ -68,7 +68,7 @@ pub(crate) const NOTE: &str = "**References.** The paper compares with grammars 
     references are of several kinds, none of which any method sees. *shipped*: the grammars that the 34 shipped layouts were \
     derived from, mostly all floors of a wing at once and then all elements of a floor at once. *printed*: the grammar that the paper \
     prints for facade (i) (Sec. 4.6); its own method found it. *floors_first*, *columns_first*, *interleaved*, *symmetric*, *nested*: \
-    grammars as people with these habits write them (module `edifice_generators::facade_grammar::references`), in which a window or door with \
+    grammars as people with these habits write them (module `edifice_generators_facade_grammar::references`), in which a window or door with \
     the wall around it is a tile. Each of these five has layouts made for it, and for each of these layouts there is a grammar of all five \
     kinds that derives the same terminals. All non-terminal regions count, the whole facade included. A repeat has no region for its period \
     unless the period is one non-terminal.";

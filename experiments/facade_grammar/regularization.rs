@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{data, projection};
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_io::{LabelMap, label_image};
 use edifice_layout::regularize::regularize_grid;
 use edifice_report::{Align, Row, Table};

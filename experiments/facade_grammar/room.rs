@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::compare::Comparison;
 use super::runs::{Solver, mean};
 use super::{BEST, PAPER};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{BoundLimits, Settings, lower_bound};
+use edifice_frame::Context;
 use edifice_report::{Align, Row, Table};
 
 /// Saving that the table asks about, in per cent.

@@ -4,11 +4,11 @@ use cpu_time::ThreadTime;
 
 use serde::{Deserialize, Serialize};
 
-use crate::peers;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Operations, Readings, Settings, infer};
 use edifice_grammar::{Costs, Grammar, evaluate};
+use edifice_peers as peers;
 use edifice_shape::Facade;
 
 /// A method with its number of iterations.

@@ -5,11 +5,11 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use super::{BEST, PAPER};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Settings, infer};
-use edifice_generators::facade_grammar as made;
+use edifice_frame::Context;
+use edifice_generators_facade_grammar as made;
 use edifice_grammar::derive;
 use edifice_report::{Chart, Corner, Figure, Row, Scale, Series};
 

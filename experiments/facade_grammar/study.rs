@@ -1,7 +1,7 @@
 //! The studies of this paper, for sweeps.
 
 use super::trial::Inference;
-use crate::sweep::{Better, Study};
+use edifice_sweep::{Better, Study};
 
 /// Grammar inference on one facade.
 pub fn infer() -> Study {

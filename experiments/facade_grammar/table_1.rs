@@ -5,9 +5,9 @@ use super::data::FIGURE_9;
 use super::published::Published;
 use super::runs::{Solver, least, mean};
 use super::{BEST, PAPER, ratios, room};
-use crate::Context;
 use edifice_base::Result;
 use edifice_facade_grammar::{Method, Operations};
+use edifice_frame::Context;
 use edifice_report::{Align, Bars, Figure, Scale, Table};
 
 /// Costs, rules and times of the methods with 2,000 and 10,000 iterations.

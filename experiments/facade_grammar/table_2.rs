@@ -5,10 +5,11 @@ use super::data::FIGURE_9;
 use super::published::{AUTOMATIC, Published};
 use super::runs::Solver;
 use super::{BEST, PAPER, ratios};
-use crate::{Context, peers};
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::{Method, Operations};
+use edifice_frame::Context;
 use edifice_grammar::{Costs, derive};
+use edifice_peers as peers;
 use edifice_report::{Align, Table};
 use edifice_shape::LabelGrid;
 

@@ -1,8 +1,8 @@
 //! Table 3: scores that people gave. It needs people: only the printed row is shown.
 
 use super::published::{AUTOMATIC, Published};
-use crate::Context;
 use edifice_base::Result;
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 
 /// Shows the printed numbers.

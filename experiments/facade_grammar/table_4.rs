@@ -6,10 +6,11 @@ use super::published::Published;
 use super::references::{self, Judged, NOTE};
 use super::runs::{Question, Solver};
 use super::{BEST, PAPER, picture};
-use crate::{Context, peers};
 use edifice_base::{Error, Result};
 use edifice_facade_grammar::Method;
+use edifice_frame::Context;
 use edifice_grammar::derivation;
+use edifice_peers as peers;
 use edifice_report::{Align, Figure, Outline, Table, Tiles, category};
 
 /// Five automatic methods, and greedy, against references of every kind.

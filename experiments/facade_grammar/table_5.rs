@@ -5,8 +5,8 @@ use super::published::Published;
 use super::references::{self, NOTE};
 use super::runs::{Question, Solver};
 use super::{BEST, PAPER};
-use crate::Context;
 use edifice_base::Result;
+use edifice_frame::Context;
 use edifice_grammar::Costs;
 use edifice_report::{Align, Table};
 

@@ -1,7 +1,7 @@
 //! The ease with which a classifier tells drawn facades from real ones.
 
-use crate::roc::area_under_curve;
 use edifice_base::{Error, Result, unwatched};
+use edifice_frame::roc::area_under_curve;
 use edifice_model::boosting::{Boosting, Settings};
 use edifice_shape::{Axis, Facade};
 

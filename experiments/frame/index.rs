@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::Program;
 use super::document::readable;
 use super::documents;
 use super::lock::Lock;
@@ -10,10 +11,10 @@ use edifice_base::{Error, Result};
 use edifice_report::{self as report, Beside, Page, Section};
 
 /// Folder of sweeps under the report.
-pub(crate) const SWEEPS: &str = "sweeps";
+pub const SWEEPS: &str = "sweeps";
 
 /// Writes `OUT/index.html` over every paper found there, and then every sweep, so that those run one by one add up.
-pub(crate) fn write_index(out: &Path) -> Result<PathBuf> {
+pub fn write_index(program: &Program, out: &Path) -> Result<PathBuf> {
     // Of two runs that end at once, the second writes the page that has both.
     let _lock = Lock::wait(out)?;
     let mut folders = made_in(out)?;
@@ -23,7 +24,7 @@ pub(crate) fn write_index(out: &Path) -> Result<PathBuf> {
     }
     let pages: Vec<Page> = folders
         .iter()
-        .map(|folder| page(folder, &Run::read(folder)))
+        .map(|folder| page(program, folder, &Run::read(folder)))
         .collect();
     let path = out.join("index.html");
     edifice_base::file::write_atomic(&path, report::index(&pages).as_bytes())?;
@@ -53,7 +54,7 @@ fn is_kept(made: &Made, file: &str) -> bool {
 }
 
 /// One paper's part of the index.
-fn page(folder: &Path, run: &Run) -> Page {
+fn page(program: &Program, folder: &Path, run: &Run) -> Page {
     let sections = run.order.iter().filter_map(|name| {
         let made = run.artefacts.get(name)?;
         let markdown = std::fs::read_to_string(folder.join(format!("{name}.md"))).ok()?;
@@ -66,7 +67,7 @@ fn page(folder: &Path, run: &Run) -> Page {
             files,
             absent,
             command: made.command.clone(),
-            studio: documents::command(&run.experiment, name, folder),
+            studio: documents::command(program, &run.experiment, name, folder),
             beside: made.comparisons.iter().map(beside).collect(),
             skipped: made.skipped.clone(),
             // The same wherever it is made again; commit, sources, time and machine are in `provenance.json`.

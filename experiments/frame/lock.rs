@@ -17,14 +17,14 @@ const NAME: &str = ".lock";
 struct Busy;
 
 /// The right to write into a folder, until it is dropped or the process ends, however it ends.
-pub(crate) struct Lock(#[expect(dead_code, reason = "held, not read")] File);
+pub struct Lock(#[expect(dead_code, reason = "held, not read")] File);
 
 impl Lock {
     /// Takes the folder.
     ///
     /// # Errors
     /// [`Error::Content`] that names the folder when another run has it.
-    pub(crate) fn take(folder: &Path) -> Result<Self> {
+    pub fn take(folder: &Path) -> Result<Self> {
         let file = open(folder)?;
         exclusive(&file, folder)?;
         Ok(Self(file))
@@ -34,7 +34,7 @@ impl Lock {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub(crate) fn claim(path: &Path) -> Result<Option<Self>> {
+    pub fn claim(path: &Path) -> Result<Option<Self>> {
         let file = open_file(path)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(Self(file))),
@@ -47,7 +47,7 @@ impl Lock {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub(crate) fn wait(folder: &Path) -> Result<Self> {
+    pub fn wait(folder: &Path) -> Result<Self> {
         let file = open(folder)?;
         file.lock().or_else(|e| unsupported(folder, e))?;
         Ok(Self(file))
@@ -58,7 +58,7 @@ impl Lock {
 ///
 /// # Errors
 /// [`Error::Content`] then, [`Error::Io`].
-pub(crate) fn exclusive(file: &File, path: &Path) -> Result<()> {
+pub fn exclusive(file: &File, path: &Path) -> Result<()> {
     match file.try_lock() {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err(Error::content(path, Busy)),

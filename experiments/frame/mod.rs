@@ -1,31 +1,40 @@
 //! The frame that all papers' experiments share: options, resumable units, artefacts, the report.
 
+pub mod averages;
 mod context;
 mod document;
 mod documents;
 mod estimate;
 mod index;
 mod journal;
-pub(super) mod lock;
-pub(super) mod memory;
+pub mod layouts;
+pub mod lock;
+pub mod memory;
 mod options;
 mod own;
+mod parsed;
+pub mod picture;
+pub mod place;
+mod program;
 mod progress;
-pub(super) mod provenance;
+pub mod provenance;
+pub mod roc;
 mod run;
+mod sources;
 mod times;
 mod verify;
 
 pub use context::Context;
 pub use documents::{Pictured, ReportDocument, Shown, documents, shown};
-pub(super) use index::{SWEEPS, write_index};
+pub use index::{SWEEPS, write_index};
 pub use journal::Journal;
 pub use options::{Args, Budget, Options};
 pub use own::Own;
-pub(crate) use progress::Progress;
-pub use progress::silence;
-pub(crate) use run::main;
-pub use run::{Report, run, run_to_end};
+pub use parsed::Parsed;
+pub use program::Program;
+pub use progress::{Progress, silence};
+pub use run::{Report, main, run, run_to_end};
+pub use sources::Sources;
 
 /// One table or figure of a paper.
 pub struct Artefact {

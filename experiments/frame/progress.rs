@@ -20,7 +20,7 @@ fn is_silent() -> bool {
 }
 
 /// Progress of one batch of units.
-pub(crate) struct Progress {
+pub struct Progress {
     bar: Option<ProgressBar>,
     name: String,
     total: u64,
@@ -30,7 +30,7 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Starts at `done` of `total` units.
-    pub(crate) fn new(name: &str, total: u64, done: u64) -> Self {
+    pub fn new(name: &str, total: u64, done: u64) -> Self {
         let shown = std::io::stderr().is_terminal() && !is_silent();
         let bar = shown.then(|| {
             let bar = ProgressBar::new(total).with_position(done);
@@ -57,7 +57,7 @@ impl Progress {
     }
 
     /// One unit more is done; plain lines come at each tenth of a long batch.
-    pub(crate) fn step(&self) {
+    pub fn step(&self) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         match &self.bar {
             Some(bar) => bar.inc(1),

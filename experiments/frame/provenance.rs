@@ -9,14 +9,14 @@ use sha2::{Digest, Sha256};
 use edifice_base::{Error, Result};
 
 /// Name of the file of what is the same wherever it is made again.
-pub(crate) const RUN: &str = "run.json";
+pub const RUN: &str = "run.json";
 
 /// Name of the file of what differs from one run to the next.
 const PROVENANCE: &str = "provenance.json";
 
 /// Provenance of the artefacts of one paper, `OUT/<paper>/run.json` and `provenance.json`.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Run {
+pub struct Run {
     /// Slug of the paper.
     pub experiment: String,
     /// Authors, year and title.
@@ -30,7 +30,7 @@ pub(crate) struct Run {
 /// The way in which an artefact was made. Commit, sources, time and machine stand in `provenance.json`; a `run.json` of before, which has them
 /// itself, is read too.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Made {
+pub struct Made {
     /// Its subject.
     pub title: String,
     /// The command that makes it again; `DATA` stands for the folder of the real data.
@@ -51,7 +51,7 @@ pub(crate) struct Made {
     /// True if files of the sources differed from that commit.
     #[serde(default, skip_serializing)]
     pub dirty: Option<bool>,
-    /// Digest of the sources that it depends on ([`super::verify::sources_of`]); empty where none was recorded.
+    /// Digest of the sources that it depends on ([`Sources::of_paper`](super::Sources::of_paper)); empty where none was recorded.
     #[serde(default, skip_serializing)]
     pub sources: String,
     /// Seconds from start to end, units taken from the journal not counted.
@@ -91,7 +91,7 @@ struct Build {
 
 /// A machine, as far as it matters for times.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Machine {
+pub struct Machine {
     /// Logical cores.
     pub cores: usize,
     /// Threads that ran units.
@@ -104,7 +104,7 @@ pub(crate) struct Machine {
 
 impl Machine {
     /// This machine.
-    pub(crate) fn this(threads: usize) -> Self {
+    pub fn this(threads: usize) -> Self {
         Self {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             threads,
@@ -114,16 +114,9 @@ impl Machine {
     }
 }
 
-/// The commit that the program was built from, and if files differed from it, as the build script found them.
-pub(crate) fn commit() -> (Option<String>, Option<bool>) {
-    let commit = option_env!("EDIFICE_COMMIT").map(str::to_owned);
-    let dirty = option_env!("EDIFICE_DIRTY").map(|d| d == "true");
-    (commit, dirty)
-}
-
 /// A quantity, what the paper printed, what this run found.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct Comparison {
+pub struct Comparison {
     /// Name of the quantity.
     pub quantity: String,
     /// The paper's number as printed.
@@ -134,7 +127,7 @@ pub(crate) struct Comparison {
 
 impl Run {
     /// Reads what a folder holds; missing files, or those of another version, are an empty run.
-    pub(crate) fn read(folder: &Path) -> Self {
+    pub fn read(folder: &Path) -> Self {
         let mut run: Self = read(&folder.join(RUN)).unwrap_or_default();
         if let Some(provenance) = read::<Provenance>(&folder.join(PROVENANCE)) {
             for (name, build) in provenance.artefacts {
@@ -151,7 +144,7 @@ impl Run {
     }
 
     /// Writes both files.
-    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
+    pub fn write(&self, folder: &Path) -> Result<()> {
         let build = |made: &Made| Build {
             commit: made.commit.clone(),
             dirty: made.dirty,
@@ -184,14 +177,14 @@ fn write(path: &Path, value: &impl Serialize) -> Result<()> {
 }
 
 /// SHA-256 of a file, or of the names and contents of all files below a folder, in order of name.
-pub(crate) fn digest(path: &Path) -> Result<String> {
+pub fn digest(path: &Path) -> Result<String> {
     let mut hash = Sha256::new();
     add(&mut hash, path, path)?;
     Ok(hex(&hash.finalize()))
 }
 
 /// Lower-case hexadecimal.
-pub(crate) fn hex(bytes: &[u8]) -> String {
+pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 

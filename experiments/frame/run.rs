@@ -14,11 +14,11 @@ use super::estimate::{readable_seconds, say_how_long, seconds_before};
 use super::index::write_index;
 use super::lock::Lock;
 use super::options::{Args, Options};
+use super::place::suggestion;
 use super::progress::{line, result};
-use super::provenance::{Machine, Made, Run, commit};
-use super::verify::{say_which_are_older, sources_of};
-use super::{Artefact, Experiment};
-use crate::sweep::definition::suggestion;
+use super::provenance::{Machine, Made, Run};
+use super::verify::say_which_are_older;
+use super::{Artefact, Experiment, Program};
 use edifice_base::{Error, Result};
 use edifice_report as report;
 
@@ -97,7 +97,11 @@ impl Report {
 /// # Errors
 /// [`Error::Option`] for an unknown artefact, [`Error::Content`] when another run writes into the same
 /// folder, [`Error::Io`] when the report cannot be written, [`Error::Interrupted`] after Ctrl-C.
-pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Report> {
+pub fn run(
+    program: &Program,
+    experiments: &[&'static Experiment],
+    options: &Options,
+) -> Result<Report> {
     let chosen = choose(experiments, &options.only)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
@@ -123,7 +127,7 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
                 format!(" ({} last time)", readable_seconds(s))
             });
             line(&format!("{name}: {}{took}", artefact.title));
-            match pool.install(|| make(experiment, artefact, &folder, options)) {
+            match pool.install(|| make(program, experiment, artefact, &folder, options)) {
                 Ok(None) => report.made.push(name),
                 Ok(Some(reason)) => report.skipped.push((name, reason)),
                 Err(Error::Interrupted) => return Err(Error::Interrupted),
@@ -134,7 +138,7 @@ pub fn run(experiments: &[&'static Experiment], options: &Options) -> Result<Rep
             }
         }
     }
-    report.index = write_index(&options.out)?;
+    report.index = write_index(program, &options.out)?;
     if report.failed.is_empty() {
         for (experiment, artefacts) in &chosen {
             remove_work(&options.out.join(experiment.slug).join(WORK), artefacts)?;
@@ -171,6 +175,7 @@ fn choose(
 
 /// Makes one artefact with all its files; returns the reason when it was left out.
 fn make(
+    program: &Program,
     experiment: &'static Experiment,
     artefact: &'static Artefact,
     folder: &Path,
@@ -213,7 +218,6 @@ fn make(
     run.experiment = experiment.slug.to_string();
     run.paper = experiment.paper.to_string();
     run.order = experiment.artefacts.iter().map(|a| a.name.into()).collect();
-    let (commit, dirty) = commit();
     let made = Made {
         title: artefact.title.to_string(),
         command: options.command(experiment.slug, artefact.name),
@@ -222,9 +226,9 @@ fn make(
         settings: ctx.settings,
         data: ctx.data,
         version: env!("CARGO_PKG_VERSION").to_string(),
-        commit,
-        dirty,
-        sources: sources_of(experiment.slug),
+        commit: program.sources.commit.map(str::to_owned),
+        dirty: program.sources.dirty,
+        sources: program.sources.of_paper(experiment.slug),
         wall_seconds: start.elapsed().as_secs_f64(),
         machine: Machine::this(rayon::current_num_threads()),
         files: ctx.files,
@@ -271,9 +275,9 @@ struct Cli {
 }
 
 /// The `main` of a paper's own binary.
-pub(crate) fn main(experiment: &'static Experiment) -> ExitCode {
+pub fn main(program: &Program, experiment: &'static Experiment) -> ExitCode {
     let args = Cli::parse().args;
-    match run_to_end(&[experiment], args) {
+    match run_to_end(program, &[experiment], args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             line(&format!("error: {error}"));
@@ -286,11 +290,16 @@ pub(crate) fn main(experiment: &'static Experiment) -> ExitCode {
 ///
 /// # Errors
 /// As [`run`] and [`Report::check`].
-pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()> {
+pub fn run_to_end(
+    program: &Program,
+    experiments: &[&'static Experiment],
+    args: Args,
+) -> Result<()> {
     let json = args.json;
     let options = args.check()?;
     if options.verify {
-        return say_which_are_older(&choose(experiments, &options.only)?, &options, json);
+        let chosen = choose(experiments, &options.only)?;
+        return say_which_are_older(program, &chosen, &options, json);
     }
     // A second Ctrl-C stops at once: nothing finished is lost either way.
     let _ = ctrlc::set_handler(|| {
@@ -299,7 +308,7 @@ pub fn run_to_end(experiments: &[&'static Experiment], args: Args) -> Result<()>
         }
         line("stopping after the units under way; Ctrl-C again stops at once");
     });
-    let report = run(experiments, &options)?;
+    let report = run(program, experiments, &options)?;
     for text in report.summary() {
         line(&text);
     }

@@ -54,6 +54,15 @@ static FAKE: Experiment = Experiment {
     documents: |_| Vec::new(),
 };
 
+static PROGRAM: Program = Program {
+    experiments: &[&FAKE],
+    sources: Sources {
+        crates: &[],
+        commit: None,
+        dirty: None,
+    },
+};
+
 fn options(out: &std::path::Path) -> Options {
     Options {
         only: Vec::new(),
@@ -72,23 +81,23 @@ fn a_run_that_was_stopped_goes_on_where_it_was() {
     let whole = tempfile::tempdir().unwrap();
     let parts = tempfile::tempdir().unwrap();
     let csv = |out: &std::path::Path| std::fs::read(out.join("fake/table_1.csv")).unwrap();
-    run(&[&FAKE], &options(whole.path())).unwrap();
+    run(&PROGRAM, &[&FAKE], &options(whole.path())).unwrap();
     assert_eq!(RUNS.load(Ordering::SeqCst), 5);
 
     RUNS.store(0, Ordering::SeqCst);
     LIMIT.store(3, Ordering::SeqCst);
-    let stopped = run(&[&FAKE], &options(parts.path()));
+    let stopped = run(&PROGRAM, &[&FAKE], &options(parts.path()));
     assert!(matches!(stopped, Err(edifice_base::Error::Interrupted)));
     assert!(parts.path().join("fake/.work").exists());
 
     // Another artefact's run, which goes on with nothing of this one, takes nothing from it.
     let mut other = options(parts.path());
     other.only = vec!["table_2".into()];
-    run(&[&FAKE], &other).unwrap();
+    run(&PROGRAM, &[&FAKE], &other).unwrap();
 
     RUNS.store(0, Ordering::SeqCst);
     LIMIT.store(usize::MAX, Ordering::SeqCst);
-    let report = run(&[&FAKE], &options(parts.path())).unwrap();
+    let report = run(&PROGRAM, &[&FAKE], &options(parts.path())).unwrap();
     assert_eq!(
         RUNS.load(Ordering::SeqCst),
         2,
@@ -110,11 +119,11 @@ fn a_folder_that_another_run_has_is_refused() {
     let folder = out.path().join("fake");
     std::fs::create_dir(&folder).unwrap();
     let other = lock::Lock::take(&folder).unwrap();
-    let message = run(&[&FAKE], &table).unwrap_err().to_string();
+    let message = run(&PROGRAM, &[&FAKE], &table).unwrap_err().to_string();
     assert!(
         message.contains("fake: another run writes here"),
         "{message}"
     );
     drop(other);
-    run(&[&FAKE], &table).unwrap();
+    run(&PROGRAM, &[&FAKE], &table).unwrap();
 }

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use super::options::Options;
 use super::progress::{line, result};
 use super::provenance::{self, Made, Run};
-use super::{Artefact, Experiment};
-use crate::sweep::sources;
+use super::{Artefact, Experiment, Program};
 use edifice_base::{Error, Result};
 use edifice_datasets as datasets;
 
@@ -24,18 +23,12 @@ pub(crate) enum State {
     Older(Vec<String>),
 }
 
-/// Digest of the sources that a paper's artefacts depend on: those of its method and of all that this is built on, of the readers
-/// and the layouts, of its own experiments, and the versions of foreign crates.
-pub(crate) fn sources_of(slug: &str) -> String {
-    let method = format!("edifice-{}", slug.replace('_', "-"));
-    sources::digest(&[&method, "edifice-io", "edifice-layout"], slug)
-}
-
 /// The state of each artefact, in the order of the report, as `paper/artefact`.
 ///
 /// # Errors
 /// Those of reading the data.
 pub(crate) fn verify(
+    program: &Program,
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
 ) -> Result<Vec<(String, State)>> {
@@ -51,7 +44,7 @@ pub(crate) fn verify(
         for artefact in artefacts {
             let state = match run.artefacts.get(artefact.name) {
                 None => State::Missing,
-                Some(made) => digests.state(made, &sources_of(experiment.slug))?,
+                Some(made) => digests.state(made, &program.sources.of_paper(experiment.slug))?,
             };
             found.push((format!("{}/{}", experiment.slug, artefact.name), state));
         }
@@ -72,11 +65,12 @@ struct Stale {
 /// # Errors
 /// When one is older, or data cannot be read.
 pub(crate) fn say_which_are_older(
+    program: &Program,
     chosen: &[(&'static Experiment, Vec<&'static Artefact>)],
     options: &Options,
     json: bool,
 ) -> Result<()> {
-    let found = verify(chosen, options)?;
+    let found = verify(program, chosen, options)?;
     let (mut older, mut states) = (0, Vec::new());
     for (name, state) in &found {
         let said = match state {
@@ -190,6 +184,5 @@ mod tests {
         ] {
             assert_eq!(digests.state(&made(sources, data), "s").unwrap(), expected);
         }
-        assert_ne!(sources_of("facade_grammar"), sources_of("procedural_logic"));
     }
 }

@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
-use crate::sweep::{Better, Given, Outcome, Study};
 use edifice_base::{Error, Result};
 use edifice_optim::annealing::{Annealing, Cooling, Landscape};
+use edifice_sweep::{Better, Given, Outcome, Study};
 
 /// Settings of annealing.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -35,7 +35,7 @@ impl Default for Settings {
 }
 
 /// Simulated annealing.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("left_out", Better::Lower), ("optimal", Better::Higher)];
     let about = "simulated annealing on knapsacks of known optimum: value left out of the knapsack";
     Study::new("optim/annealing", about, "optim", METRICS, run)

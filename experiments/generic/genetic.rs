@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::knapsack::{Knapsack, Solved};
-use crate::sweep::{Better, Given, Outcome, Study};
 use edifice_base::{Error, Result};
 use edifice_optim::genetic::{self, Breed, Genetic};
+use edifice_sweep::{Better, Given, Outcome, Study};
 
 /// Settings of the genetic algorithm.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -42,7 +42,7 @@ impl Default for Settings {
 }
 
 /// The genetic algorithm.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("left_out", Better::Lower), ("optimal", Better::Higher)];
     let about =
         "the genetic algorithm on knapsacks of known optimum: value left out of the knapsack";

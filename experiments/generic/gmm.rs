@@ -8,11 +8,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::density::{self, Question, Truth};
-use crate::sweep::trial::{Answered, Posed, Trial};
-use crate::sweep::{Better, Given, Study};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result, Watched};
 use edifice_model::gmm::{self, Criterion, Mixture, Points, select};
+use edifice_sweep::trial::{Answered, Posed, Trial};
+use edifice_sweep::{Better, Given, Study};
 
 /// The criterion that the number of components minimizes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,7 +60,7 @@ impl Default for Settings {
 }
 
 /// Gaussian mixtures.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("nll", Better::Lower), ("components", Better::Lower)];
     let about = "Gaussian mixtures on a CSV table of numbers: negative log-likelihood of unseen rows; seeds split the rows";
     Study::trial::<Density>("model/gmm", about, "model", METRICS)

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
-use crate::sweep::{Outcome, Shared};
 use edifice_base::{Error, Result};
 use edifice_io::{json, read_bytes};
+use edifice_sweep::{Outcome, Shared};
 
 /// A problem.
 #[derive(Debug, Clone, Deserialize)]

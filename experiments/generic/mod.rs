@@ -1,8 +1,8 @@
 //! Studies of the generic layers, for sweeps: models and optimizers without buildings.
 
-pub(crate) mod annealing;
+pub mod annealing;
 mod density;
-pub(crate) mod genetic;
-pub(crate) mod gmm;
+pub mod genetic;
+pub mod gmm;
 mod knapsack;
-pub(crate) mod network;
+pub mod network;

@@ -4,13 +4,13 @@ use rand::{Rng, RngExt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::sweep::{Better, Given, Outcome, Shared, Study};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_io::read_bytes;
 use edifice_model::conjugate::Priors;
 use edifice_model::network::{Evidence, FitSettings, Network};
 use edifice_model::{Cell, Table};
+use edifice_sweep::{Better, Given, Outcome, Shared, Study};
 
 /// Settings of learning.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -45,7 +45,7 @@ impl Default for Settings {
 const UNSEEN: usize = 1_000;
 
 /// Learning of the parameters of a network.
-pub(crate) fn study() -> Study {
+pub fn study() -> Study {
     const METRICS: &[(&str, Better)] = &[("excess", Better::Lower)];
     let about = "parameters of a discrete Bayesian network (BIF) learnt from its own draws: log-likelihood of unseen rows below the true network's, nats a row";
     Study::new("model/network", about, "model", METRICS, run).made_of(&["edifice-model"], "generic")

@@ -2,8 +2,8 @@
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::{Budget, Context};
 use edifice_base::{Error, Result};
+use edifice_frame::{Budget, Context};
 use edifice_optim::grid::points;
 use edifice_procedural_logic::{Inference, Model, Parameters, fewest_rules, search_axes};
 use edifice_report::{Figure, HeatMap};

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::gold::{Annotations, Architecture};
 use super::{outline, shipped};
-use crate::{Budget, Context, layouts};
 use edifice_base::{Error, Result};
+use edifice_frame::{Budget, Context, layouts};
 use edifice_io::{ReadOptions, read_label_grid};
 use edifice_shape::{Facade, LabelGrid};
 

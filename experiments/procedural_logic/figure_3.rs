@@ -2,10 +2,10 @@
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::Context;
-use crate::picture::tiles;
 use edifice_base::{Error, Result};
 use edifice_cluster::{Dendrogram, Linkage, agglomerate, purity};
+use edifice_frame::Context;
+use edifice_frame::picture::tiles;
 use edifice_procedural_logic::{Measure, Model, Parameters};
 use edifice_report as report;
 use edifice_report::{Figure, HeatMap, Merge, Table};

@@ -3,11 +3,11 @@
 use super::data::{Source, sources};
 use super::gold::{Architecture, Doors};
 use super::{RANKS, row, trivial};
-use crate::Context;
 use edifice_base::{Error, Result};
 use edifice_cluster::{
     MatchCurve, Protocol, Query, Ties, Unmatched, cumulative_match, match_curve,
 };
+use edifice_frame::Context;
 use edifice_procedural_logic::{Measure, Model, Parameters};
 use edifice_report::{Align, Chart, Corner, Figure, Scale, Series, Table};
 use nalgebra::DMatrix;

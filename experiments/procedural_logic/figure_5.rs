@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use super::data::{Source, sources};
 use super::{data_table, row};
-use crate::frame::memory::peak_megabytes;
-use crate::{Budget, Context};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::memory::peak_megabytes;
+use edifice_frame::{Budget, Context};
 use edifice_procedural_logic::{
     Alphabet, Canvas, Coefficients, Inference, NaryTree, Parameters, learn_affinity, parse,
 };

@@ -3,10 +3,10 @@
 use super::data::sources;
 use super::words::Structure;
 use super::{data_table, row};
-use crate::Context;
-use crate::picture::tiles;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
+use edifice_frame::picture::tiles;
 use edifice_procedural_logic::{Instance, Known, Model, Parameters, Style, starting_rules, vector};
 use edifice_report::Figure;
 use nalgebra::{DMatrix, DVector};

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::data::sources;
 use super::row;
 use super::words::{Structure, rule_text};
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_procedural_logic::{Model, Parameters, starting_rules};
 use edifice_report::{Align, Table};
 

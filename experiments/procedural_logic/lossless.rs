@@ -2,8 +2,8 @@
 
 use super::data::{shipped_layouts, sources};
 use super::{data_table, row, shipped};
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_grammar::derive;
 use edifice_procedural_logic::{Model, NaryTree, Parameters, split_grammar};
 use edifice_report::Table;

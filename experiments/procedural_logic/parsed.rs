@@ -5,7 +5,7 @@ use edifice_grammar::parametric::{Item, Parse, Rule, Rules, Symbol};
 use edifice_procedural_logic::{Alphabet, Model, NaryNode, NaryTree, Parameters};
 use edifice_shape::{Facade, LabelGrid};
 
-use crate::parsed::Parsed;
+use edifice_frame::Parsed;
 
 /// Learns affinities and rules from some facades (parameters for compression) and parses them and others.
 ///

@@ -4,9 +4,9 @@ use super::data::sources;
 use super::figure_4::retrieve;
 use super::gold::Doors;
 use super::{data_table, row};
-use crate::{Budget, Context};
 use edifice_base::Error;
 use edifice_base::Result;
+use edifice_frame::{Budget, Context};
 use edifice_procedural_logic::{Extent, Facing, Measure, Model, Parameters};
 
 /// Tries each reading of `W` in Eq. 3 with each reading of Eq. 6.

@@ -4,8 +4,8 @@ use super::data::{Source, sources};
 use super::figure_4::retrieve;
 use super::gold::Doors;
 use super::{data_table, row};
-use crate::{Budget, Context};
 use edifice_base::{Error, Result};
+use edifice_frame::{Budget, Context};
 use edifice_optim::grid::{minimize, points};
 use edifice_procedural_logic::{Measure, Model, Parameters, search_axes};
 

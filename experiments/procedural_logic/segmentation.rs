@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data::{Source, label_images, sources};
 use super::noise::{outcome, rates};
-use crate::{Budget, Context};
+use edifice_frame::{Budget, Context};
 
 /// The numbers of one set of labels.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]

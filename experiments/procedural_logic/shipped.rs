@@ -9,8 +9,8 @@
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::layouts::FIGURE_9;
 use edifice_base::rng::stream;
+use edifice_frame::layouts::FIGURE_9;
 use edifice_shape::{Facade, GridError, LabelGrid, Region};
 
 /// Families of small buildings, with facade (i).

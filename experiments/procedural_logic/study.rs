@@ -1,7 +1,7 @@
 //! The studies of this paper, for sweeps.
 
 use super::trial::Ranking;
-use crate::sweep::{Better, Study};
+use edifice_sweep::{Better, Study};
 
 /// Retrieval of facades without architectural change among all facades of the sweep.
 pub fn retrieval() -> Study {

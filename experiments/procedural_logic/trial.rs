@@ -15,12 +15,12 @@ use super::figure_4::retrieve;
 use super::gold::{Architecture, Doors};
 use super::settings::{Retrieval, measure, parameters};
 use super::{outline, shipped};
-use crate::sweep::trial::{Answered, Posed, Trial};
-use crate::sweep::{Given, Shared};
 use edifice_base::{Error, Result, Watched};
 use edifice_io::{ReadOptions, json, read_bytes, read_facade, read_label_grid, write_atomic};
 use edifice_procedural_logic::Model;
 use edifice_shape::LabelGrid;
+use edifice_sweep::trial::{Answered, Posed, Trial};
+use edifice_sweep::{Given, Shared};
 
 /// Retrieval of facades without architectural change.
 pub(super) struct Ranking;
@@ -196,7 +196,7 @@ impl Trial for Ranking {
     fn posed(posed: &Posed) -> Result<Question> {
         let mut grids = Vec::new();
         if let Some(folder) = &posed.learn {
-            for path in crate::layouts::files(folder, ".json")? {
+            for path in edifice_frame::layouts::files(folder, ".json")? {
                 grids.push(read_grid(&path)?);
             }
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::{Budget, Context, layouts};
+use edifice_frame::{Budget, Context, layouts};
 use edifice_io::{ReadOptions, Source, read_source};
 use edifice_structure_completion::layout::{Layout, extract, scope};
 

@@ -2,9 +2,9 @@
 
 use super::picture::panel;
 use super::{data, folds, row};
-use crate::Context;
 use edifice_base::Result;
 use edifice_base::rng::stream;
+use edifice_frame::Context;
 use edifice_report::Figure;
 use edifice_structure_completion::layout::{Class, Element};
 use edifice_structure_completion::method::{Method, complete};

@@ -15,9 +15,9 @@
 //! least one half.
 
 use super::row;
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_io::lattice_npz::{self, Lattice, LatticePair};
 use edifice_report::{Align, Table};
 use edifice_shape::Rect;

@@ -9,12 +9,12 @@ use std::path::Path;
 
 use edifice_base::{Error, Result};
 
-use crate::frame::provenance;
-use crate::sweep::Study;
-use crate::sweep::collect::RESULTS;
-use crate::sweep::examples::examples;
-use crate::sweep::instances::Instance;
-use crate::sweep::plan::{Head, Plan};
+use edifice_frame::provenance;
+use edifice_sweep::Study;
+use edifice_sweep::collect::RESULTS;
+use edifice_sweep::examples::examples;
+use edifice_sweep::instances::Instance;
+use edifice_sweep::plan::{Head, Plan};
 
 /// The sweep of the leaderboard among those that ship.
 const BOARD: &str = "structure_completion_leaderboard";

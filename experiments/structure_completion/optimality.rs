@@ -3,9 +3,9 @@
 use rand::RngExt;
 
 use super::{data, row};
-use crate::Context;
 use edifice_base::Result;
 use edifice_base::rng::stream;
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 use edifice_shape::Axis;
 use edifice_structure_completion::best::chain::{Chain, LineProblem, log_weight};

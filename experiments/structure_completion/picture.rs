@@ -1,6 +1,6 @@
 //! Layouts of elements as panels.
 
-use crate::picture::material;
+use edifice_frame::picture::material;
 use edifice_report::{Colour, Outline, Tile, Tiles};
 use edifice_structure_completion::layout::Element;
 

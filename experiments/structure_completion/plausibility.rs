@@ -3,9 +3,9 @@
 
 use rand::seq::SliceRandom;
 
-use crate::roc::area_under_curve;
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
+use edifice_frame::roc::area_under_curve;
 use edifice_model::boosting::{Boosting, BoostingError, Settings};
 use edifice_shape::{Axis, Rect};
 use edifice_structure_completion::layout::lines::lines;

@@ -1,7 +1,7 @@
 //! The numbers that the paper printed, `datasets/structure_completion/published.csv`.
 
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_io::read_bytes;
 
 /// The printed numbers.

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::plausibility::auc;
 use super::row;
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 use edifice_structure_completion::method::Method;
 use edifice_structure_completion::task::Task;

@@ -1,7 +1,7 @@
 //! The studies of this paper, for sweeps.
 
 use super::trial::Completion;
-use crate::sweep::{Better, Study};
+use edifice_sweep::{Better, Study};
 
 /// Completion of one facade by a model learnt from others.
 pub fn complete() -> Study {

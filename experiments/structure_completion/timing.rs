@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use super::published::Published;
 use super::{data, row};
-use crate::{Budget, Context};
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
+use edifice_frame::{Budget, Context};
 use edifice_report::{Align, Table};
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::method::{Method, complete};

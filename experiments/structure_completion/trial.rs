@@ -11,8 +11,6 @@ use std::sync::Arc;
 use super::data::Item;
 use super::figures::{drawn, in_size, without};
 use super::settings::Complete;
-use crate::sweep::trial::{Answered, Posed, Trial};
-use crate::sweep::{Given, Shared};
 use edifice_base::rng::stream;
 use edifice_base::{Ended, Error, Result, Watched};
 use edifice_io::{ReadOptions, facade_json, read_bytes, read_source, write_atomic};
@@ -23,6 +21,8 @@ use edifice_structure_completion::method::{self, Method};
 use edifice_structure_completion::model::Model;
 use edifice_structure_completion::partial::PartialLayout;
 use edifice_structure_completion::policy::{Budget, PaperModel};
+use edifice_sweep::trial::{Answered, Posed, Trial};
+use edifice_sweep::{Given, Shared};
 
 /// Completion of one facade by what others teach.
 pub(super) struct Completion;
@@ -198,7 +198,7 @@ impl Trial for Completion {
         let observed = elements(&facade.facade)?;
         let mut layouts = Vec::new();
         if let Some(folder) = &posed.learn {
-            for path in crate::layouts::files(folder, ".json")? {
+            for path in edifice_frame::layouts::files(folder, ".json")? {
                 let facade = facade_json::read(&path)?;
                 layouts.push(Layout {
                     elements: elements(&facade)?,

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::published::Published;
 use super::row;
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_model::factor_graph::Settings;
 use edifice_report::{Align, BarGroup, Bars, Figure, Scale, Table};
 use edifice_structure_completion::layout::Layout;

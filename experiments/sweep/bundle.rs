@@ -16,8 +16,8 @@ use super::plan::{Head, PLAN, Plan, Task};
 use super::ro_crate::{File, METADATA, Published, metadata};
 use super::run::entry;
 use super::study::Study;
-use crate::frame::provenance::{self, Machine, hex};
 use edifice_base::{Error, Result, Watched, file, unwatched};
+use edifice_frame::provenance::{self, Machine, hex};
 
 /// The contents of a bundle.
 #[derive(Debug, Serialize, Deserialize)]

@@ -2,8 +2,8 @@
 
 use include_dir::{Dir, include_dir};
 
-/// `experiments/sweeps/` of the checkout that the program was built from.
-static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/sweeps");
+/// `experiments/sweep/examples/` of the checkout that the program was built from.
+static SWEEPS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/examples");
 
 /// A sweep file that ships.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::study::Study;
-use crate::frame::provenance;
 use edifice_base::{Error, Result};
 use edifice_datasets as datasets;
+use edifice_frame::provenance;
 
 /// Folder of unpacked data sets in a sweep's folder.
 const DATA: &str = "data";

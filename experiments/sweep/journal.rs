@@ -12,8 +12,8 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 
 use super::study::Outcome;
-use crate::frame::lock;
 use edifice_base::{Error, Result};
+use edifice_frame::lock;
 
 /// Folder of the journals in a sweep's folder.
 const FOLDER: &str = "journal";

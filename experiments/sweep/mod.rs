@@ -33,7 +33,6 @@ pub mod report;
 pub mod ro_crate;
 pub mod run;
 mod shared;
-pub(super) mod sources;
 pub mod statistics;
 pub mod study;
 pub mod submit;
@@ -41,5 +40,5 @@ pub mod trial;
 
 pub use given::Given;
 pub use plan::Plan;
-pub(super) use shared::Shared;
+pub use shared::Shared;
 pub use study::{Better, Outcome, Study};

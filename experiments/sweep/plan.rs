@@ -11,9 +11,9 @@ use super::command::Command;
 use super::definition::{Arm, Definition, ReportOptions, TaskOptions, arms, read};
 use super::instances::{Instance, files};
 use super::study::{Better, Study};
-use crate::frame::lock::Lock;
-use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
+use edifice_frame::lock::Lock;
+use edifice_frame::provenance;
 
 /// Name of the plan in a sweep's folder.
 pub const PLAN: &str = "plan.jsonl";

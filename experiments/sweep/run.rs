@@ -12,9 +12,9 @@ use super::instances::changed;
 use super::journal::{Entry, Journal, Keep, read_all};
 use super::plan::{Plan, Task};
 use super::study::Study;
-use crate::frame::Progress as Bar;
 use edifice_base::rng::stream;
 use edifice_base::{Ended, Error, Progress, Result, Watch, Watched};
+use edifice_frame::Progress as Bar;
 
 /// The tasks of a shard that are run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

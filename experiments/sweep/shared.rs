@@ -6,14 +6,14 @@ use std::sync::{Arc, Mutex};
 use edifice_base::Result;
 
 /// The last values made, by key. A value depends on its key alone, so that results do not depend on which task made it.
-pub(crate) struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
+pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
 
 /// Values that are kept.
 const KEPT: usize = 64;
 
 impl<V> Shared<V> {
     /// A store without any value.
-    pub(crate) const fn new() -> Self {
+    pub const fn new() -> Self {
         Self(Mutex::new(VecDeque::new()))
     }
 
@@ -22,7 +22,7 @@ impl<V> Shared<V> {
     ///
     /// # Errors
     /// Those of `make`.
-    pub(crate) fn get(&self, key: String, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
+    pub fn get(&self, key: String, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
         if let Some((_, value)) = self.kept().iter().find(|(known, _)| *known == key) {
             return Ok(Arc::clone(value));
         }

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::given::Given;
-use super::sources;
 use super::trial::{Answered, Posed, Trial};
 use edifice_base::{Error, Result, Watched, unwatched};
+use edifice_frame::Program;
 
 /// The values of a metric that are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -79,7 +79,11 @@ pub struct Study {
     pub claims: &'static [&'static str],
     /// Names of the settings that make the question; the others are those of built-in methods. Empty where the study does not tell.
     pub asks: &'static [&'static str],
+    crates: &'static [&'static str],
+    part: &'static str,
+    /// Digest of the sources that its results depend on.
     sources: String,
+    commit: (Option<String>, Option<bool>),
 }
 
 /// The faults of an answer that any study finds.
@@ -128,7 +132,10 @@ impl Study {
             foreign: None,
             claims: &[],
             asks: &[],
+            crates: &[],
+            part: "",
             sources: String::new(),
+            commit: (None, None),
         }
     }
 
@@ -177,11 +184,28 @@ impl Study {
 
     /// The same study, whose results depend on the sources of these crates and of its part of the experiments.
     #[must_use]
-    pub fn made_of(self, crates: &[&str], part: &str) -> Self {
+    pub fn made_of(self, crates: &'static [&'static str], part: &'static str) -> Self {
         Self {
-            sources: sources::digest(crates, part),
+            crates,
+            part,
             ..self
         }
+    }
+
+    /// The same study, of a program.
+    #[must_use]
+    pub fn of(self, program: &Program) -> Self {
+        let sources = &program.sources;
+        Self {
+            sources: sources.digest(self.crates, self.part),
+            commit: (sources.commit.map(str::to_owned), sources.dirty),
+            ..self
+        }
+    }
+
+    /// The commit that its program was built from, and if files differed from it.
+    pub(crate) fn commit(&self) -> (Option<String>, Option<bool>) {
+        self.commit.clone()
     }
 
     /// The same study, whose question is made by these settings alone.

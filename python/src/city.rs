@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use edifice_city_proceduralization::{Budget, Mode, Precision, Settings, proceduralize};
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_io::city::{self, cityjson, grammar_file, obj};
+use edifice_io_city::{self as city, cityjson, grammar_file, obj};
 use edifice_shape::triangles::{self, CityBuilding, TriangleMesh, VolumeRaster, repair};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;

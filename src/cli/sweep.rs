@@ -158,7 +158,12 @@ pub(crate) fn run(command: Command) -> Result<()> {
             let text = report::report(&plan, &options.common.out, study, options.allow_missing)?;
             print::line(text.trim_end())?;
             if let Some(into) = &options.into {
-                let index = report::publish(&options.common.sweep, &options.common.out, into)?;
+                let index = report::publish(
+                    &edifice_experiments::PROGRAM,
+                    &options.common.sweep,
+                    &options.common.out,
+                    into,
+                )?;
                 print::message(&format!("report in {}", index.display()));
             }
             let folder = options.common.out.join("report");

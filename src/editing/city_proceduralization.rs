@@ -24,7 +24,7 @@ use super::{Applied, CommandError, Editor, Opened, State, ends, parse};
 use edifice_base::{Error, Result, Watch, unwatched};
 use edifice_city_proceduralization::synthesis::{Shape, synthesize};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice_io::city::{self, cityjson, glb, grammar_json, obj};
+use edifice_io_city::{self as city, cityjson, glb, grammar_json, obj};
 
 const ENDING: &str = ".city-grammar.json";
 const FORMATS: &[&str] = &["glb", "obj", "city.json"];

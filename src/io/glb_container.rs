@@ -9,7 +9,7 @@ pub struct TooLong(pub u64);
 ///
 /// # Errors
 /// [`TooLong`].
-pub(crate) fn glb_container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, TooLong> {
+pub fn glb_container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, TooLong> {
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let total = 12 + 8 + json.len() as u64 + 8 + binary.len() as u64;
@@ -28,7 +28,7 @@ pub(crate) fn glb_container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Ve
 
 /// Why bytes are no binary glTF.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub(crate) enum ContainerError {
+pub enum ContainerError {
     /// Another version than 2.
     #[error("binary glTF of version {0}, expected 2")]
     Version(u32),
@@ -44,7 +44,7 @@ pub(crate) enum ContainerError {
 ///
 /// # Errors
 /// [`ContainerError`].
-pub(crate) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ContainerError> {
+pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ContainerError> {
     let word = |bytes: &[u8], at: usize| {
         let four = bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
         four.map(u32::from_le_bytes)

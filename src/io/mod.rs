@@ -1,4 +1,4 @@
-//! Bytes to values and back: every file format of facades and grammars.
+//! Bytes to values and back: every file format of facades, grammars, buildings and scenes. Cities have a crate of their own, `edifice-io-city`.
 //!
 //! Readers check everything at the door and name the file and the place of what is wrong; bytes that are in no file are
 //! parsed at [`IN_NO_FILE`]. Writers
@@ -9,7 +9,6 @@ mod annotation;
 pub mod annotation_xml;
 pub mod building_csv;
 pub mod building_json;
-pub mod city;
 pub mod cmp_xml;
 pub mod coco;
 pub mod detailed_cityjson;
@@ -19,7 +18,7 @@ pub mod draw;
 mod facade_file;
 pub mod facade_json;
 pub mod footprint;
-mod glb_container;
+pub mod glb_container;
 pub mod gltf;
 mod gltf_document;
 mod gltf_error;
@@ -39,6 +38,7 @@ pub mod palette;
 pub mod photograph;
 pub mod pixels;
 pub mod raster;
+pub mod reference_system;
 pub mod scene_png;
 pub mod scene_svg;
 pub mod surface_obj;
@@ -53,7 +53,7 @@ pub use facade_file::{
 };
 pub use grammar_file::{read_grammar, write_grammar};
 pub use label_map::LabelMap;
-pub use packed::read_bytes;
+pub use packed::{extension, read_bytes};
 
 /// The path of bytes that are in no file: errors then tell the place in the bytes alone, and what a reader would look for beside
 /// its file is sought in the working folder.
@@ -66,8 +66,8 @@ pub use packed::read_bytes;
 /// ```
 pub const IN_NO_FILE: &str = "";
 
-/// Name of a facade that carries none: the file name up to its first dot.
-fn file_stem(path: &Path) -> String {
+/// Name of a facade or a city that carries none: the file name up to its first dot.
+pub fn file_stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     match name.split('.').next() {
         Some(stem) if !stem.is_empty() => stem.to_string(),

@@ -51,7 +51,7 @@ fn unpacked_up_to(most: u64, bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The extension that tells the format, in lower case, without a closing `.gz`.
-pub(crate) fn extension(path: &Path) -> String {
+pub fn extension(path: &Path) -> String {
     let lower = |path: &Path| {
         let extension = path.extension().unwrap_or_default();
         extension.to_string_lossy().to_lowercase()

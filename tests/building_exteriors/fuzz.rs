@@ -6,7 +6,7 @@ use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::rng::stream;
 use edifice::shape::{Building, Ridge, Roof, RoofStyle, Special};
-use edifice_generators::building_exteriors::wild;
+use edifice_generators_building_exteriors::wild;
 use rand::RngExt;
 use rayon::prelude::*;
 

@@ -8,7 +8,7 @@ use edifice::methods::building_exteriors::house::model::expected_volume;
 use edifice::methods::building_exteriors::house::{Joining, model};
 use edifice::methods::building_exteriors::mass::is_sound;
 use edifice::model::hierarchy::Priors;
-use edifice_generators::building_exteriors::{
+use edifice_generators_building_exteriors::{
     DEPENDENCIES, Family, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
 };
 

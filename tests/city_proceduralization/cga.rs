@@ -7,7 +7,7 @@ use edifice::io::city::{cga, grammar_file, read};
 use edifice::io::grammar_cga::solids::{Scope, SolidRules};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 use crate::cga_judge::{judge, measures};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use edifice::io::city::obj;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 /// Runs a command in `folder`; exit code, what it printed, and messages.
 fn run(folder: &Path, args: &[&str]) -> (i32, String, String) {

@@ -6,7 +6,7 @@ use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings
 use edifice::rng::{Stream, stream};
 use edifice::shape::triangles::TriangleMesh;
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 use rand::RngExt;
 
 /// Every triangle that a grammar derives to, in world coordinates, with its building.

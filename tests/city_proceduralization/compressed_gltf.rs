@@ -9,7 +9,7 @@ use edifice::methods::city_proceduralization::{Budget, Mode, Settings, procedura
 use edifice::rng::{Stream, stream};
 use edifice::shape::triangles::{City, CityBuilding, TriangleMesh};
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 use rand::RngExt;
 use serde_json::Map;
 

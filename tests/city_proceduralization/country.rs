@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use edifice::io::city::earth::geodetic;
 use edifice::io::city::{cityjson, compact, obj};
 use edifice::rng::stream;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 use rand::RngExt;
 use serde_json::Value;
 

@@ -6,7 +6,7 @@ use edifice::io::city::{cityjson, glb, npz, obj};
 use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings, decompose};
 use edifice::shape::triangles::CityBuilding;
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 use super::grammar::{by_hand, derived, iou, settings};
 

@@ -14,7 +14,7 @@ use edifice::methods::city_proceduralization::{
 };
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 pub(super) fn settings(mode: Mode, budget: Budget) -> Settings {
     Settings {

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use edifice::io::city::{self, obj};
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 /// Moments at which a run is killed, as shares of the time that it takes undisturbed.
 const MOMENTS: [f64; 9] = [0.02, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98, 1.0];

@@ -6,7 +6,7 @@ use edifice::methods::city_proceduralization::{Budget, Mode, Precision, Settings
 use edifice::rng::stream;
 use edifice::shape::triangles::City;
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 use rand::seq::SliceRandom;
 
 fn settings(mode: Mode, budget: Budget) -> Settings {

@@ -12,7 +12,7 @@ use edifice::methods::city_proceduralization::{Budget, Precision, Settings, proc
 use edifice::shape::triangles::{City, TriangleMesh, VolumeRaster};
 use edifice::unwatched;
 use edifice_editing::city_proceduralization::{CityEdit, edit};
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 
 fn made(city: &City, budget: Budget) -> InstanceGrammar {
     let settings = Settings {

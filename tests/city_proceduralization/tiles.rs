@@ -7,7 +7,7 @@ use edifice::io::city::{gltf, tiles};
 use edifice::methods::city_proceduralization::{Budget, Mode, Settings, proceduralize};
 use edifice::shape::triangles::{City, CityBuilding};
 use edifice::unwatched;
-use edifice_generators::city_proceduralization as synthetic;
+use edifice_generators_city_proceduralization as synthetic;
 use serde_json::Value;
 
 /// Corners of compressed tiles are within so many metres of their places.

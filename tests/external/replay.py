@@ -17,7 +17,9 @@ ROOT = subprocess.check_output(["git", "rev-parse", "--show-toplevel"], text=Tru
 # Where sources stood before the crates.
 MOVED = {"src/error.rs": "src/base", "src/rng.rs": "src/base", "src/file.rs": "src/base",
          "src/tables/": "src/model/tables/", "src/methods/mod.rs": "src/lib.rs", "src/bin/": "experiments/bin/",
-         "experiments/frame/datasets.rs": "datasets/mod.rs"}
+         "experiments/frame/datasets.rs": "datasets/mod.rs", "experiments/sweep/sources.rs": "experiments/frame/sources.rs"}
+# What all experiments share stands in the frame today.
+MOVED.update({f"experiments/{name}.rs": "experiments/frame" for name in ("averages", "layouts", "parsed", "picture", "roc")})
 
 
 def crates():
@@ -50,7 +52,8 @@ def main():
             if path.startswith(old):
                 path = new + path[len(old):] if new.endswith("/") else new + "/" + os.path.basename(path)
         for f, name in by_depth:
-            if path.startswith(f + "/"):
+            # A paper's list of artefacts stood beside its folder.
+            if path.startswith(f + "/") or path == f + ".rs":
                 return name
         return "edifice" if path in ("src/lib.rs", "src/main.rs") else None
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use edifice_io as io;
+use edifice::io;
 use edifice_model::network::Network;
 use edifice_shape::Rect;
 

@@ -9,6 +9,7 @@ mod formats;
 mod help_examples;
 mod installed;
 mod lines;
+mod program;
 mod programs;
 mod prose;
 mod quoted;

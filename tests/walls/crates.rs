@@ -105,7 +105,7 @@ fn drawn() -> String {
                 format!(" on {}", below.join(", "))
             };
             lines.push(
-                format!("  {:<24}{folder:<38}{on}", short(name))
+                format!("  {:<42}{folder:<44}{on}", short(name))
                     .trim_end()
                     .to_owned(),
             );

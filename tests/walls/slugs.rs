@@ -26,14 +26,13 @@ const REGISTRIES: &[&str] = &[
     "src/lib.rs",
     "src/cli/mod.rs",
     "src/editing/mod.rs",
-    "experiments/generators/mod.rs",
     "experiments/mod.rs",
-    "experiments/peers.rs",
+    "experiments/peers/mod.rs",
 ];
 
 /// The list of another paper's artefacts is one, too: there may be artefacts that compare two papers.
 fn is_registry(place: &str) -> bool {
-    let artefacts = |slug: &String| place == format!("experiments/{slug}.rs");
+    let artefacts = |slug: &String| place == format!("experiments/{slug}/mod.rs");
     REGISTRIES.contains(&place) || slugs().iter().any(artefacts)
 }
 
@@ -62,16 +61,20 @@ fn slugs() -> Vec<String> {
     slugs
 }
 
-/// True if a line names a method: its slug, its crate or the library of its crate.
+/// True if a line names a method: its slug, a crate of it or the library of such a crate.
 fn names(line: &str, slug: &str) -> bool {
     let dashed = slug.replace('_', "-");
-    [
-        slug.to_owned(),
-        format!("edifice_{slug}"),
-        format!("edifice-{dashed}"),
-    ]
-    .iter()
-    .any(|name| has_word(line, name))
+    let of_crate = |kind: &str| {
+        [
+            format!("edifice_{}{slug}", kind.replace('-', "_")),
+            format!("edifice-{kind}{dashed}"),
+        ]
+    };
+    let mut known = ["", "experiments-", "generators-"]
+        .into_iter()
+        .flat_map(of_crate);
+    has_word(line, slug)
+        || known.any(|name| has_word(line, &name))
         || line.contains(&format!("src/methods/{slug}"))
 }
 

@@ -7,12 +7,12 @@ use sha2::{Digest, Sha256};
 
 use super::split::{Seen, split};
 use super::tile::Tile;
-use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
 use edifice_city_proceduralization::country::{CountrySettings, Shares};
 use edifice_city_proceduralization::{Precision, Representative};
-use edifice_io::city;
+use edifice_frame::provenance;
 use edifice_io::json::{check_header, parse_json};
+use edifice_io_city as city;
 
 /// Name of the plan in its folder.
 pub const PLAN: &str = "plan.json";

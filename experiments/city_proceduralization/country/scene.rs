@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use edifice_io::city::earth;
-use edifice_io::city::region::Region;
+use edifice_io_city::earth;
+use edifice_io_city::region::Region;
 
 /// A tile's scene, as its tileset tells of it.
 pub(super) struct Scene {

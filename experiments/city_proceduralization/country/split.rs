@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use super::tile::Tile;
-use crate::frame::provenance;
 use edifice_base::{Error, Result, file};
-use edifice_io::city::cityjson;
+use edifice_frame::provenance;
+use edifice_io_city::cityjson;
 use edifice_shape::triangles::{City, CityBuilding};
 
 /// Folder of the tiles that a city was split into.

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use crate::sweep::submit::word;
 use edifice_base::{Error, Result};
+use edifice_sweep::submit::word;
 
 use super::plan::Plan;
 

@@ -7,13 +7,13 @@ use serde_json::{Value, json};
 use super::plan::Plan;
 use super::scene::Scene;
 use super::tile::Tile;
-use crate::frame::provenance;
 use edifice_base::{Error, Result, Watch, file};
 use edifice_city_proceduralization::country::{Sample, Stands, code, merge, propose};
+use edifice_frame::provenance;
 use edifice_grammar::instance::Kept;
-use edifice_io::city::compact::{self, DICTIONARY};
-use edifice_io::city::proposal_json::{self, Proposal};
-use edifice_io::city::{self, tiles};
+use edifice_io_city::compact::{self, DICTIONARY};
+use edifice_io_city::proposal_json::{self, Proposal};
+use edifice_io_city::{self as city, tiles};
 use edifice_shape::triangles::City;
 
 /// A task.

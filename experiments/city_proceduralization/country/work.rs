@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
 use super::task::{Place, Task};
-use crate::frame::lock::Lock;
-use crate::frame::memory;
 use edifice_base::{Error, Progress, Result, Watch, Watched, file};
+use edifice_frame::lock::Lock;
+use edifice_frame::memory;
 
 /// The time between two looks for a task while others work on what is needed.
 const PAUSE: Duration = Duration::from_millis(50);

@@ -7,8 +7,8 @@ use super::data::{self, FIGURE_9, Instance};
 use super::iterations;
 use super::published::Published;
 use super::runs::mean;
-use crate::{Artefact, Budget, Context};
 use edifice_base::{Error, Result};
+use edifice_frame::{Artefact, Budget, Context};
 use edifice_procedural_logic::Parameters;
 use edifice_report::{Align, Chart, Corner, Figure, Row, Scale, Series, Table};
 

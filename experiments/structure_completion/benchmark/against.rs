@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use super::columns::{BASELINES, COLUMNS, text};
 use super::measures::Measured;
 use super::models::MADE;
-use crate::Context;
-use crate::sweep::statistics::{holm, signed_rank};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
+use edifice_sweep::statistics::{holm, signed_rank};
 
 /// Level of the tests.
 const LEVEL: f64 = 0.05;

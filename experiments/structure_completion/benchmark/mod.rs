@@ -41,9 +41,9 @@ use self::measures::{Measured, measured};
 use self::models::Tested;
 use self::tables::Cases;
 use super::row;
-use crate::{Budget, Context};
 use edifice_base::Result;
 use edifice_base::rng::stream;
+use edifice_frame::{Budget, Context};
 use edifice_structure_completion::method::Method;
 use edifice_structure_completion::sights::Sight;
 

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 
 use super::super::data::{self, Item};
 use super::super::folds;
-use crate::Context;
 use edifice_base::{Error, Result, Watched, unwatched};
+use edifice_frame::Context;
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::made::facades;
 use edifice_structure_completion::model::{Model, shipped_model};

@@ -2,8 +2,8 @@
 
 use super::super::row;
 use super::models::Models;
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 use edifice_structure_completion::layout::Layout;
 use edifice_structure_completion::made::grids;

@@ -7,8 +7,8 @@ use super::against::Margins;
 use super::columns::{BASELINES, COLUMNS, number, text};
 use super::measures::{Measured, calibration_error, ratio};
 use super::models::MADE;
-use crate::Context;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_report::{Align, Table};
 use edifice_structure_completion::sights::Sight;
 

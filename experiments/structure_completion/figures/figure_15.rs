@@ -2,9 +2,9 @@
 
 use super::super::picture::panel;
 use super::super::row;
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_io::facade_json;
 use edifice_report::{Align, Figure, Table};
 use edifice_shape::{AnnotatedFacade, Facade, Rect, Region};

@@ -2,9 +2,9 @@
 
 use super::super::{folds, row};
 use super::{facades, first, split};
-use crate::Context;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_io::gltf;
 use edifice_io::scene_png::picture_png;
 use edifice_report::{Align, Table};

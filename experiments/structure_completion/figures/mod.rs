@@ -13,9 +13,9 @@ pub(crate) mod figure_8;
 pub(crate) use figure_18::{drawn, without};
 
 use super::data::{self, Item};
-use crate::Context;
 use edifice_base::unwatched;
 use edifice_base::{Error, Result};
+use edifice_frame::Context;
 use edifice_structure_completion::completion::Completion;
 use edifice_structure_completion::layout::{Class, Element, Layout};
 use edifice_structure_completion::policy::PaperModel;

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::definition::suggestion;
-use crate::frame::provenance;
 use edifice_base::{Error, Result};
+use edifice_frame::provenance;
 
 /// Seconds of a command unless the arm says otherwise.
 const TIMEOUT: f64 = 600.0;

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use super::Command;
 use super::limits::{bytes, bytes_below, resident};
-use crate::sweep::trial::Posed;
+use crate::trial::Posed;
 use edifice_base::{Error, Progress, Result, Watched};
 
 /// Most bytes that a command may write, answer and messages together.

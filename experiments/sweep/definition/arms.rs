@@ -8,10 +8,10 @@ use serde_json::{Map, Value};
 use toml::Spanned;
 
 use super::file::{ArmEntry, Definition, Lists, Settings};
-use super::place::suggestion;
-use crate::sweep::command::Command;
-use crate::sweep::study::Study;
+use crate::command::Command;
+use crate::study::Study;
 use edifice_base::{Error, Result};
+use edifice_frame::place::suggestion;
 
 /// A configuration that is compared with others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::place::{place, suggestion};
 use super::task::TaskOptions;
-use crate::sweep::command::Written;
-use crate::sweep::study::{Better, Study};
+use crate::command::Written;
+use crate::study::{Better, Study};
 use edifice_base::{Error, Result};
+use edifice_frame::place::{place, suggestion};
 
 /// Settings by name, each with its place in the file.
 pub(super) type Settings = BTreeMap<Spanned<String>, Spanned<toml::Value>>;

@@ -2,10 +2,9 @@
 
 mod arms;
 mod file;
-mod place;
 mod task;
 
 pub use arms::{Arm, arms};
+pub use edifice_frame::place::{nearest, suggestion};
 pub use file::{Definition, ReportOptions, read};
-pub use place::{nearest, suggestion};
 pub use task::TaskOptions;

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::sweep::plan::Plan;
-use crate::sweep::record::Record;
-use crate::sweep::statistics::{Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank};
-use crate::sweep::study::{Better, Study};
+use crate::plan::Plan;
+use crate::record::Record;
+use crate::statistics::{Interval, Ranks, Signed, bootstrap, holm, ranks, signed_rank};
+use crate::study::{Better, Study};
 use edifice_base::rng::stream;
 
 /// The question of a comparison.

@@ -1,10 +1,10 @@
 //! Figures of a sweep's report.
 
 use super::compare::Comparison;
-use crate::sweep::plan::Plan;
-use crate::sweep::record::Record;
-use crate::sweep::statistics::{profile, reached};
-use crate::sweep::study::{Better, Study};
+use crate::plan::Plan;
+use crate::record::Record;
+use crate::statistics::{profile, reached};
+use crate::study::{Better, Study};
 use edifice_report::{Chart, Corner, Figure, Ranking, Scale, Series};
 
 /// Critical-difference diagram; none with fewer than two arms.

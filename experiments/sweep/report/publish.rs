@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::REPORT;
-use crate::frame::SWEEPS;
-use crate::frame::provenance::{Machine, Made, Run, commit};
-use crate::frame::write_index;
-use crate::sweep::collect::RESULTS;
-use crate::sweep::plan::Plan;
-use crate::sweep::study::Study;
+use crate::collect::RESULTS;
+use crate::plan::Plan;
+use crate::study::Study;
 use edifice_base::{Error, Result, file};
+use edifice_frame::Program;
+use edifice_frame::SWEEPS;
+use edifice_frame::provenance::{Machine, Made, Run};
+use edifice_frame::write_index;
 
 /// Name of the one artefact of a sweep.
 const ARTEFACT: &str = "report";
@@ -21,7 +22,7 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
     let mut settings = BTreeMap::new();
     let mut set = |name: &str, value: serde_json::Value| settings.insert(name.to_owned(), value);
     set("tasks", head.tasks.into());
-    let arm = |arm: &crate::sweep::definition::Arm| (arm.name.clone(), arm.settings.clone().into());
+    let arm = |arm: &crate::definition::Arm| (arm.name.clone(), arm.settings.clone().into());
     set(
         "arms",
         head.arms
@@ -31,7 +32,7 @@ pub(super) fn provenance(plan: &Plan, study: &Study, seconds: f64, folder: &Path
             .into(),
     );
     let data = head.instances.iter().chain(&head.learn);
-    let (commit, dirty) = commit();
+    let (commit, dirty) = study.commit();
     let made = Made {
         title: study.about.to_owned(),
         command: "edifice sweep report".to_owned(),
@@ -79,7 +80,7 @@ fn files(folder: &Path) -> Result<Vec<String>> {
 ///
 /// # Errors
 /// [`Error::Io`].
-pub fn publish(sweep: &Path, out: &Path, into: &Path) -> Result<PathBuf> {
+pub fn publish(program: &Program, sweep: &Path, out: &Path, into: &Path) -> Result<PathBuf> {
     let name = sweep.file_stem().unwrap_or_default();
     let slug = format!("{SWEEPS}/{}", name.to_string_lossy());
     let target = into.join(&slug);
@@ -102,5 +103,5 @@ pub fn publish(sweep: &Path, out: &Path, into: &Path) -> Result<PathBuf> {
         made.files = files(&target)?;
     }
     run.write(&target)?;
-    write_index(into)
+    write_index(program, into)
 }

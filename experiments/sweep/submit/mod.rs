@@ -52,6 +52,6 @@ pub fn packing(plan: &Plan, out: &Path) -> Result<Packing> {
 }
 
 /// A path as one word of a shell.
-pub(crate) fn word(path: &Path) -> String {
+pub fn word(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
 }

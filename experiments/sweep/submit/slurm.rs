@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use super::{Packing, word};
-use crate::sweep::plan::Plan;
+use crate::plan::Plan;
 
 /// Most elements of an array, and whether Slurm was asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

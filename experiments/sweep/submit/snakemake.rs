@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Packing, word};
-use crate::sweep::plan::Plan;
+use crate::plan::Plan;
 use edifice_base::{Error, Result};
 
 /// A Snakefile that runs all shards and collects, in the sweep's folder.

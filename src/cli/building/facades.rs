@@ -8,7 +8,8 @@ use edifice_building_exteriors::dress::{Dresser, Settings, openings};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_building_exteriors::survey::Candidate;
 use edifice_io::detailed_cityjson::{Document, Place};
-use edifice_io::{city, write_atomic};
+use edifice_io::write_atomic;
+use edifice_io_city as city;
 use edifice_shape::{DetailedBuilding, PartKind};
 use serde_json::json;
 

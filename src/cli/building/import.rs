@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use edifice_base::{Error, Result, csv};
 use edifice_building_exteriors::survey::{Candidate, Limits, Refused, Surveyed, survey_all};
-use edifice_io::{building_json, city, write_atomic};
+use edifice_io::{building_json, write_atomic};
+use edifice_io_city as city;
 use edifice_shape::Building;
 use edifice_shape::triangles::City;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{Begins, InstanceGrammar};
-use edifice_io::city::picture::Legend;
+use edifice_io_city::picture::Legend;
 use edifice_shape::triangles::{City, CityBuilding};
 use rustc_hash::FxHashMap;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
-use edifice_io::city::{cityjson, obj};
+use edifice_io_city::{cityjson, obj};
 
 use super::data;
 use crate::print::Json;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
-use edifice_io::city;
-use edifice_io::city::compact::DICTIONARY;
-pub(super) use edifice_io::city::grammar_file::is_grammar;
+use edifice_io_city as city;
+use edifice_io_city::compact::DICTIONARY;
+pub(super) use edifice_io_city::grammar_file::is_grammar;
 use edifice_shape::triangles::City;
 
 use crate::print;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar};
-use edifice_io::city::{self, cga, cityjson, glb, glb_compressed, grammar_file, obj};
+use edifice_io_city::{self as city, cga, cityjson, glb, glb_compressed, grammar_file, obj};
 
 use super::data;
 use crate::print::{self, Json};

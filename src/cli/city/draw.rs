@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
-use edifice_io::city::picture::{self, Drawing, Drawn, View};
+use edifice_io_city::picture::{self, Drawing, Drawn, View};
 
 use super::colours::{Colour, Colouring, Read, colouring};
 use crate::print::Json;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use edifice_base::{Error, Result};
 use edifice_editing::CommandError;
 use edifice_editing::city_proceduralization::{CityEdit, edit};
-use edifice_io::city::grammar_file;
+use edifice_io_city::grammar_file;
 
 use super::data;
 use super::residuals::Residuals;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use edifice_base::{Error, Result};
 use edifice_city_proceduralization::facades::{Facade, facades, photographed};
 use edifice_city_proceduralization::localization::{Seen, landmarks, locate, locate_facades};
-use edifice_io::city::view_json;
 use edifice_io::{pixels, read_bytes};
+use edifice_io_city::view_json;
 use rayon::prelude::*;
 
 use super::data;

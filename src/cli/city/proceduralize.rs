@@ -13,7 +13,7 @@ use edifice_city_proceduralization::{
     judge,
 };
 use edifice_grammar::instance::{InstanceGrammar, Kept};
-use edifice_io::city::{self, glb, grammar_file};
+use edifice_io_city::{self as city, glb, grammar_file};
 use edifice_shape::triangles::{City, MeshFaults};
 
 use super::residuals::Residuals;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use edifice_base::{Error, Progress, Result};
 use edifice_city_proceduralization::synthesis::Shape;
 use edifice_editing::city_proceduralization::fill;
-use edifice_io::city::{geojson, grammar_file};
+use edifice_io_city::{geojson, grammar_file};
 
 use super::{data, derive};
 use crate::print;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use edifice_base::{Error, Result};
-use edifice_io::city::tiles;
+use edifice_io_city::tiles;
 
 use super::data;
 use crate::print::Json;

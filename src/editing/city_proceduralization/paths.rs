@@ -89,7 +89,7 @@ mod tests {
 
     use super::*;
     use edifice_datasets::shipped_bytes;
-    use edifice_io::city::grammar_json;
+    use edifice_io_city::grammar_json;
 
     #[test]
     fn the_walk_is_that_of_the_derivation() {

@@ -44,7 +44,7 @@ pub(super) fn read(path: &Path) -> Result<City> {
     }
     let mut city =
         city.ok_or_else(|| Error::content(path, "no .obj file in the archive".to_owned()))?;
-    let name = crate::file_stem(path);
+    let name = edifice_io::file_stem(path);
     city.name = name.strip_suffix(".tar").unwrap_or(&name).to_owned();
     Ok(city)
 }

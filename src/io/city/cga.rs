@@ -23,7 +23,7 @@
 //! ```
 //!
 //! # What CityEngine asks for
-//! The pages of its reference are listed in [`crate::grammar_cga::solids`], the independent reader, which evaluates the text
+//! The pages of its reference are listed in [`edifice_io::grammar_cga::solids`], the independent reader, which evaluates the text
 //! as [`read`] does. Beyond them:
 //! - An attribute is set for a shape by an object attribute of the same name ([attributes]); the property `rule` names the start rule.
 //! - A footprint begins with the corner of smallest x and y in the building's own frame, counterclockwise. Rules begin by laying x along
@@ -54,9 +54,9 @@ use std::path::Path;
 pub use error::CgaCityError;
 pub use read::read;
 
-use crate::{file_stem, write_atomic};
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::{file_stem, write_atomic};
 use rules::Rules;
 
 /// A city grammar in CGA.

@@ -29,8 +29,8 @@ pub use self::error::CityGmlError;
 use self::error::{DEEPEST, Dropped};
 use self::system::System;
 use super::units::in_metres;
-use crate::file_stem;
 use edifice_base::{Error, Result};
+use edifice_io::file_stem;
 use edifice_shape::triangles::City;
 
 /// Most bytes of a text between two tags: a ring of ten million corners.

@@ -14,11 +14,11 @@ use serde_json::{Map, Value, json};
 
 use super::CityError;
 use super::cityjson_drawing::Drawing;
-use super::earth::IN_METRES;
 use super::units::in_metres;
-use crate::json::parse_json;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
+use edifice_io::reference_system::standard_name;
 use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 #[derive(Deserialize)]
@@ -65,14 +65,14 @@ pub fn read(path: &Path) -> Result<City> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
-    let sequence = crate::packed::extension(path) == "jsonl";
+    let sequence = edifice_io::extension(path) == "jsonl";
     let mut parts: Vec<&[u8]> = match sequence {
         true => bytes.split(|&b| b == b'\n').collect(),
         false => vec![bytes],
     };
     parts.retain(|line| !line.trim_ascii().is_empty());
     let mut city = City {
-        name: crate::file_stem(path),
+        name: edifice_io::file_stem(path),
         ..City::default()
     };
     let mut transform = Transform {
@@ -296,25 +296,4 @@ pub fn to_string(city: &City) -> String {
         document["metadata"] = json!({ "referenceSystem": system });
     }
     document.to_string()
-}
-
-/// The beginning of the standard's names of reference systems.
-const OPEN_GIS: &str = "https://www.opengis.net/def/crs/";
-
-/// A reference system as CityJSON 2.0 names it: `EPSG:7415` is `https://www.opengis.net/def/crs/EPSG/0/7415`. The standard
-/// allows no other names: such are left out.
-pub(crate) fn standard_name(system: &str) -> Option<String> {
-    // No system has these coordinates any more.
-    if system.ends_with(IN_METRES) {
-        return None;
-    }
-    if let Some(rest) = system.strip_prefix("http://www.opengis.net/def/crs/") {
-        return Some(format!("{OPEN_GIS}{rest}"));
-    }
-    if system.starts_with(OPEN_GIS) {
-        return Some(system.to_owned());
-    }
-    let code = system.rsplit(':').next().filter(|c| !c.is_empty())?;
-    let digits = code.chars().all(|c| c.is_ascii_digit());
-    (digits && system.to_uppercase().contains("EPSG")).then(|| format!("{OPEN_GIS}EPSG/0/{code}"))
 }

@@ -5,6 +5,7 @@ use proj4rs::transform::transform;
 
 use super::citygml::system::epsg;
 use super::faceted::unit;
+use edifice_io::reference_system::IN_METRES;
 use edifice_shape::vec3::{cross, sub};
 
 /// Semi-major axis of the ellipsoid of WGS 84, in metres, and its flattening.
@@ -62,9 +63,6 @@ pub fn place(system: &str, origin: [f64; 3], middle: [f64; 3]) -> Option<[f64; 1
 pub(super) fn bend(distance: f64) -> f64 {
     distance * distance / (2.0 * AXIS)
 }
-
-/// The ending of the name of a reference system whose coordinates were feet, or others, and have been made metres.
-pub(super) const IN_METRES: &str = " in metres";
 
 /// Metres in a unit of a projected reference system, if it is known.
 pub(super) fn unit_of(system: &str) -> Option<f64> {

@@ -13,9 +13,9 @@ use serde_json::Value;
 
 use super::CityError;
 use super::units::in_metres;
-use crate::json::parse_json;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
 use edifice_shape::triangles::{City, CityBuilding, TriangleMesh, polygon_triangles};
 
 const HEIGHTS: [&str; 4] = [
@@ -61,7 +61,7 @@ pub(super) fn of_features(
     path: &Path,
 ) -> Result<City> {
     let mut city = City {
-        name: crate::file_stem(path),
+        name: edifice_io::file_stem(path),
         reference_system,
         ..City::default()
     };

@@ -5,9 +5,9 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{CityError, FARTHEST};
-use crate::json::parse_json;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
 
 /// Rings of a shape, holes and parts alike, each without its last corner, which repeats the first.
 ///

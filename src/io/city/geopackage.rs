@@ -13,8 +13,8 @@ use rusqlite::{Connection, Row};
 use serde_json::{Map, Number, Value, json};
 
 use super::{CityError, footprints};
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
 use edifice_shape::triangles::City;
 
 /// A table of features.

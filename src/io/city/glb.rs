@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use super::faceted::Faceted;
 use super::gltf_properties;
 use super::pictures::media_type;
-use crate::glb_container::{TooLong, glb_container};
 use edifice_grammar::instance::{InstanceDerivation, InstanceGrammar, Template, TemplateInstance};
+use edifice_io::glb_container::{TooLong, glb_container};
 use edifice_shape::triangles::{TriangleMesh, VIEWS, box_coordinates, box_view};
 
 /// Name of the materials of box-mapped templates.

@@ -1,7 +1,7 @@
 //! Cities as glTF 2.0: `.glb`, and `.gltf` with buffers inside it or beside it.
 //!
 //! A node of the scene with a mesh is a building, called by its name; what lies below a node whose `extras` say
-//! `"kind": "Building"`, as those of [`crate::detailed_gltf`] do, is one building. Instances of `EXT_mesh_gpu_instancing` are drawn out.
+//! `"kind": "Building"`, as those of [`edifice_io::detailed_gltf`] do, is one building. Instances of `EXT_mesh_gpu_instancing` are drawn out.
 //! A file that Edifice wrote ([`super::glb`]) says which building an instance belongs to (`_BUILDING` and the scene's `extras`): those
 //! of one building become one, which knows the instances it is put together from ([`Part`](edifice_shape::triangles::Part)). glTF is y up: (x, y, z) is read as (x, -z, y). Read are triangles, strips and fans; points and
 //! lines are left out. Textures of base colours are read as the paint of the surfaces. Every index and length is checked against the bytes there are.
@@ -22,10 +22,10 @@ use super::gltf_textures::{Image, Material, Texture, looks};
 use super::gltf_transform::{
     IDENTITY, Matrix, applied, composed, determinant, product, upright_box,
 };
-use crate::glb_container::split;
-use crate::json::parse_json;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::glb_container::split;
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
 use edifice_shape::triangles::{City, CityBuilding, Painted};
 
 /// Extensions that may be required.
@@ -152,7 +152,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
         buffers: &buffers,
         meshes: Meshes::new(&document.meshes, looks, &buffers),
         city: City {
-            name: crate::file_stem(path),
+            name: edifice_io::file_stem(path),
             ..City::default()
         },
         ids: Vec::new(),

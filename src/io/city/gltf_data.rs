@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::CityError;
 use super::meshopt_views::Compressed;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
 
 /// Bytes.
 #[derive(Deserialize)]

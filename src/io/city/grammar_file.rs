@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use super::{compact, grammar_json};
-use crate::write_atomic;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::write_atomic;
 
 /// True if a file's name says that it holds a grammar.
 pub fn is_grammar(path: &Path) -> bool {

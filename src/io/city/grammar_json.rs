@@ -28,10 +28,10 @@ use std::path::Path;
 
 use self::file::{File, FileTemplate, Number, levels_of, parameters, placement_file, rule_of};
 use super::pictures;
-use crate::json::{check_versions, parse_json};
-use crate::{read_bytes, write_atomic};
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{InstanceGrammar, Template};
+use edifice_io::json::{check_versions, parse_json};
+use edifice_io::{read_bytes, write_atomic};
 use edifice_shape::triangles::TriangleMesh;
 
 /// The value of the key `format`.

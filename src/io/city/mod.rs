@@ -58,8 +58,8 @@ pub use pictures::{add_textures, paint_parts};
 
 use std::path::Path;
 
-use super::packed;
 use edifice_base::{Error, Result};
+use edifice_io::extension;
 use edifice_shape::triangles::City;
 
 /// Coordinates beyond this are no metres.
@@ -106,7 +106,7 @@ pub enum CityError {
 /// # Errors
 /// Names the file and the element that is wrong.
 pub fn read(path: &Path) -> Result<City> {
-    let city = match packed::extension(path).as_str() {
+    let city = match extension(path).as_str() {
         "npz" => npz::read(path)?,
         "cga" => cga::read(path)?,
         "obj" => obj::read(path)?,
@@ -125,7 +125,7 @@ pub fn read(path: &Path) -> Result<City> {
 
 /// True if a packed file is CityGML by its name.
 fn is_gml(path: &Path) -> bool {
-    let inner = packed::extension(&path.with_extension(""));
+    let inner = extension(&path.with_extension(""));
     matches!(inner.as_str(), "gml" | "citygml" | "xml")
 }
 

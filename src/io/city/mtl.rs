@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 
 use super::CityError;
 use super::pictures;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
 use edifice_shape::triangles::{Surface, Texture};
 
 /// Materials by name.

@@ -85,7 +85,7 @@ pub fn parse(bytes: Vec<u8>, path: &Path) -> Result<City> {
     let meta = arrays.json("meta")?.unwrap_or_default();
     let text = |key: &str| meta.get(key).and_then(|v| v.as_str()).map(str::to_owned);
     Ok(City {
-        name: text("name").unwrap_or_else(|| crate::file_stem(path)),
+        name: text("name").unwrap_or_else(|| edifice_io::file_stem(path)),
         reference_system: text("crs"),
         origin: [0.0; 3],
         buildings,

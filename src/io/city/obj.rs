@@ -13,8 +13,8 @@ use super::CityError;
 use super::mtl::{self, Materials};
 pub use super::obj_write::{to_string, write};
 use super::shells;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::read_bytes;
 use edifice_shape::triangles::{City, CityBuilding, Painted, Surface, TriangleMesh};
 
 /// Elements without a surface, and their names in notes.
@@ -106,7 +106,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
                     )));
                 }
                 let building = *current.get_or_insert_with(|| {
-                    faces.push((crate::file_stem(path), Vec::new()));
+                    faces.push((edifice_io::file_stem(path), Vec::new()));
                     faces.len() - 1
                 });
                 uv.resize(corners.len(), [0.0; 2]);
@@ -171,7 +171,7 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<City> {
     let buildings = faces.into_iter().zip(paint);
     let buildings = buildings.filter(|((_, triangles), _)| !triangles.is_empty());
     Ok(City {
-        name: crate::file_stem(path),
+        name: edifice_io::file_stem(path),
         reference_system: None,
         origin: [0.0; 3],
         notes,

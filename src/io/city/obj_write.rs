@@ -8,8 +8,8 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::pictures::ending;
-use crate::{file_stem, write_atomic};
 use edifice_base::Result;
+use edifice_io::{file_stem, write_atomic};
 use edifice_shape::triangles::{City, CityBuilding, Painted, Surface, corner_bits};
 
 /// The material of what has no other.

@@ -8,7 +8,7 @@ mod legend;
 mod scene;
 mod terrain;
 
-use crate::scene_png::picture_png;
+use edifice_io::scene_png::picture_png;
 use edifice_scene::render::{Picture, render};
 use edifice_scene::trace::framing_at;
 use edifice_shape::triangles::City;

@@ -10,8 +10,8 @@ use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat};
 use rustc_hash::FxHashMap;
 
 use super::CityError;
-use crate::pixels::{self, PixelError};
 use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::pixels::{self, PixelError};
 use edifice_shape::triangles::{
     BoxTexture, City, CityBuilding, Painted, Surface, Texture, box_coordinates, box_view,
 };

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::grammar_json;
-use crate::json::{check_header, parse_json};
-use crate::packed::read_bytes;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::InstanceGrammar;
+use edifice_io::json::{check_header, parse_json};
+use edifice_io::read_bytes;
 
 /// Format of a proposal.
 pub const FORMAT: &str = "edifice/city-proposal";

@@ -16,9 +16,9 @@ use super::CityError;
 use super::earth::{earth_centred, geodetic};
 use super::gltf;
 use super::gltf_transform::{IDENTITY, Matrix, applied, determinant, product, shift};
-use crate::json::parse_json;
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::json::parse_json;
+use edifice_io::read_bytes;
 use edifice_shape::triangles::{City, CityBuilding, Painted};
 use edifice_shape::vec3::{cross, dot, norm, sub};
 
@@ -88,7 +88,7 @@ pub fn read(path: &Path) -> Result<City> {
         city: City {
             name: match extras["name"].as_str() {
                 Some(name) => name.to_owned(),
-                None => crate::file_stem(path.parent().unwrap_or(path)),
+                None => edifice_io::file_stem(path.parent().unwrap_or(path)),
             },
             ..City::default()
         },
@@ -201,7 +201,7 @@ impl Reader {
             // Parts are known in the coordinates of their tile alone.
             building.parts.clear();
             if !self.names_buildings {
-                building.id = format!("{}/{}", crate::file_stem(&file), building.id);
+                building.id = format!("{}/{}", edifice_io::file_stem(&file), building.id);
             }
             self.add(building);
         }

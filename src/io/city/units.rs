@@ -1,6 +1,7 @@
 //! Cities whose reference system counts in feet or other units, as metres.
 
-use super::earth::{IN_METRES, unit_of};
+use super::earth::unit_of;
+use edifice_io::reference_system::IN_METRES;
 use edifice_shape::triangles::City;
 
 /// Makes coordinates, heights too, metres where the reference system is known to count in something else, and notes it. The reference

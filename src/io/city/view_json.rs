@@ -12,9 +12,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::CityError;
-use crate::json::{check_header, parse_json};
-use crate::read_bytes;
 use edifice_base::{Error, Result};
+use edifice_io::json::{check_header, parse_json};
+use edifice_io::read_bytes;
 
 /// The value of the key `format`.
 pub const FORMAT: &str = "edifice/city-view";

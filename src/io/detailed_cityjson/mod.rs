@@ -16,7 +16,7 @@ use std::fmt::Write;
 use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
 
-use super::city::cityjson::standard_name;
+use super::reference_system::standard_name;
 use edifice_shape::solid::{Finish, Surface};
 use edifice_shape::{DetailedBuilding, Part, PartKind};
 

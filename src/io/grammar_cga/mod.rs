@@ -91,8 +91,8 @@ mod write;
 use std::path::Path;
 
 pub use error::CgaError;
-pub(crate) use names::identifier;
-pub(crate) use reserved::words as reserved_words;
+pub use names::identifier;
+pub use reserved::words as reserved_words;
 
 use super::{read_bytes, write_atomic};
 use edifice_base::{Error, Result};

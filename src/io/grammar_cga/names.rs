@@ -51,7 +51,7 @@ pub(super) fn identifiers<'g>(
 }
 
 /// A free identifier that is like a symbol; it is taken from then on.
-pub(crate) fn identifier(symbol: &str, taken: &mut FxHashSet<String>) -> String {
+pub fn identifier(symbol: &str, taken: &mut FxHashSet<String>) -> String {
     let letters = symbol
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });

@@ -43,7 +43,7 @@ const FILLING: &str = "i extrude primitiveQuad primitiveDisk primitiveCube primi
     primitiveCone";
 
 /// Every reserved word; some stand there twice.
-pub(crate) fn words() -> impl Iterator<Item = &'static str> {
+pub fn words() -> impl Iterator<Item = &'static str> {
     let lists = [KEYWORDS, OPERATIONS, ATTRIBUTES, FUNCTIONS];
     lists.into_iter().flat_map(str::split_ascii_whitespace)
 }

@@ -3,8 +3,8 @@
 use rand::RngExt;
 
 use super::kind::Kind;
-use crate::facade_grammar::elements::{Break, Glazing, Style};
-use crate::facade_grammar::theme::Rhythm;
+use crate::elements::{Break, Glazing, Style};
+use crate::theme::Rhythm;
 use edifice_base::rng::Stream;
 
 /// A tile's content.

@@ -2,9 +2,9 @@
 
 use super::kind::Kind;
 use super::plan::{Tile, TilePlan};
-use crate::facade_grammar::composition::run;
-use crate::facade_grammar::draft::{Draft, Part, leaf};
-use crate::facade_grammar::elements::door;
+use crate::composition::run;
+use crate::draft::{Draft, Part, leaf};
+use crate::elements::door;
 use edifice_grammar::Grammar;
 use edifice_shape::Axis;
 

@@ -8,10 +8,10 @@ use serde_json::Value;
 
 use super::super::{CityError, obj};
 use super::shapes_path;
-use crate::grammar_cga::solids::{Scope, Solid, SolidRules};
-use crate::json::parse_json;
-use crate::{file_stem, read_bytes};
 use edifice_base::{Error, Result};
+use edifice_io::grammar_cga::solids::{Scope, Solid, SolidRules};
+use edifice_io::json::parse_json;
+use edifice_io::{file_stem, read_bytes};
 use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
 /// The unit box, y up.
@@ -49,7 +49,7 @@ const CUBE: ([[f64; 3]; 8], [[u32; 3]; 12]) = (
 pub fn read(path: &Path) -> Result<City> {
     let bytes = read_bytes(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|e| Error::content(path, e))?;
-    let fail = |e: crate::grammar_cga::CgaError| {
+    let fail = |e: edifice_io::grammar_cga::CgaError| {
         let place = format!("line {}, column {}", e.line, e.column);
         Error::input(path, place, e)
     };

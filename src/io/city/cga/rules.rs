@@ -8,8 +8,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::assets;
 use super::error::CgaCityError;
 use super::shapes::{Kind, Start, commonest};
-use crate::grammar_cga::{identifier, reserved_words};
 use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Placement};
+use edifice_io::grammar_cga::{identifier, reserved_words};
 
 /// Functions of the text: lengths to the centimetre, extents of at least one, and extents of what is turned.
 const FUNCTIONS: &str = "\

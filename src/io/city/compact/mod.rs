@@ -53,10 +53,10 @@ use self::rules::Rules;
 use self::tree::Tree;
 pub use self::unit::Steps;
 use super::pictures;
-use crate::write_atomic;
 use edifice_base::file::read_bytes;
 use edifice_base::{Error, Result};
 use edifice_grammar::instance::{InstanceGrammar, InstanceRule, Template};
+use edifice_io::write_atomic;
 use edifice_shape::triangles::TriangleMesh;
 
 /// The first bytes of a file.

@@ -138,7 +138,7 @@ fn side(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::city::picture::View;
+    use crate::picture::View;
     use edifice_shape::triangles::{City, CityBuilding, TriangleMesh};
 
     /// A flat roof with its lower corner at a place.

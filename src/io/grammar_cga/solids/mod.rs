@@ -1,6 +1,6 @@
 //! CGA rules that make solids: boxes and assets, moved, turned and sized.
 //!
-//! The part of CityEngine's reference that [`crate::city::cga`] writes is read here, from the text alone, and evaluated for one start
+//! The part of CityEngine's reference that `edifice_io_city::cga` writes is read here, from the text alone, and evaluated for one start
 //! shape after another. Coordinates are CityEngine's: x and z lie in the plane, y is up, and the three are right-handed.
 //! Pages are below <https://esri.github.io/cityengine-sdk/html/cgaref/cgareference/> unless said otherwise.
 //!

@@ -3,9 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::{CompactError, Flag, Near, PARAMETERS, Rules};
-use crate::city::compact::integers::bits_of;
-use crate::city::compact::range_coder::Coder;
-use crate::city::compact::steps::in_steps;
+use crate::compact::integers::bits_of;
+use crate::compact::range_coder::Coder;
+use crate::compact::steps::in_steps;
 use edifice_grammar::instance::{InstanceRule, Placement};
 
 /// Sizes of the change of the number before that are told apart.
@@ -22,7 +22,7 @@ fn context(known: bool, again: bool, change: i64) -> usize {
 
 impl<C: Coder> Rules<'_, C> {
     /// The parts of the instances of `rules`.
-    pub(in crate::city::compact) fn residuals(
+    pub(in crate::compact) fn residuals(
         &mut self,
         given: &[InstanceRule],
         rules: &mut [InstanceRule],

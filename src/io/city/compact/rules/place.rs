@@ -1,11 +1,11 @@
 //! One placement: its symbol, turn, place and size.
 
 use super::{MOST_PLACEMENTS, Near, Pose, Rules};
-use crate::city::compact::error::CompactError;
-use crate::city::compact::integers::{bits_of, plain};
-use crate::city::compact::range_coder::Coder;
-use crate::city::compact::rows::Footprint;
-use crate::city::compact::steps::{SHARES, in_steps};
+use crate::compact::error::CompactError;
+use crate::compact::integers::{bits_of, plain};
+use crate::compact::range_coder::Coder;
+use crate::compact::rows::Footprint;
+use crate::compact::steps::{SHARES, in_steps};
 use edifice_grammar::instance::Placement;
 
 impl<C: Coder> Rules<'_, C> {

@@ -24,7 +24,7 @@ pub mod study;
 mod table_1;
 mod town_plan;
 
-use super::{Artefact, Experiment};
+use edifice_frame::{Artefact, Experiment};
 
 /// The paper's tables and figures, and what goes beyond them.
 pub const EXPERIMENT: Experiment = Experiment {

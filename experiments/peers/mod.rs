@@ -5,7 +5,7 @@ use edifice_base::{Error, Result};
 use edifice_grammar::Grammar;
 use edifice_shape::Facade;
 
-use super::parsed::Parsed;
+use edifice_frame::Parsed;
 
 /// Finds a grammar of one facade.
 type Infer = fn(&Facade) -> Result<Grammar>;
@@ -13,8 +13,8 @@ type Infer = fn(&Facade) -> Result<Grammar>;
 /// By name.
 #[rustfmt::skip]
 const GRAMMARS: &[(&str, Infer)] = &[
-    ("procedural_logic", super::procedural_logic::grammar), // one line each
-    ("procedural_logic_picture", super::procedural_logic::picture_grammar),
+    ("procedural_logic", edifice_experiments_procedural_logic::grammar), // one line each
+    ("procedural_logic_picture", edifice_experiments_procedural_logic::picture_grammar),
 ];
 
 /// Learns from some facades and parses them and others; lengths are multiples of a step.
@@ -23,7 +23,7 @@ type ParseAll = fn(learnt: &[Facade], others: &[Facade], step: f64) -> Result<Pa
 /// By name.
 #[rustfmt::skip]
 const PARSERS: &[(&str, ParseAll)] = &[
-    ("procedural_logic", super::procedural_logic::parsed), // one line each
+    ("procedural_logic", edifice_experiments_procedural_logic::parsed), // one line each
 ];
 
 /// Facades as rules of a method, which learns from the first of them alone.

@@ -26,8 +26,8 @@ pub mod words;
 
 pub use parsed::parsed;
 
-use super::{Artefact, Experiment};
 use edifice_base::{Error, Result};
+use edifice_frame::{Artefact, Experiment};
 use edifice_grammar::Grammar;
 use edifice_procedural_logic::{Extent, Parameters, baseline_grammar};
 use edifice_report::{Align, Row, Table};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// Line and column of a byte, both from 1.
-pub(crate) fn place(text: &str, at: &Range<usize>) -> String {
+pub fn place(text: &str, at: &Range<usize>) -> String {
     let before = text.get(..at.start).unwrap_or(text);
     let line = before.matches('\n').count() + 1;
     let column = before

@@ -24,7 +24,7 @@ mod speed;
 pub mod study;
 mod views;
 
-use super::{Artefact, Context, Experiment, Pictured};
+use edifice_frame::{Artefact, Context, Experiment, Pictured};
 use edifice_model::hierarchy::{Constant, Settings, Sweep};
 
 /// The paper's tables and figures.

@@ -22,7 +22,7 @@ mod timing;
 mod trial;
 mod weights;
 
-use super::{Artefact, Experiment};
+use edifice_frame::{Artefact, Experiment};
 use edifice_report::Row;
 
 /// The benchmark, and the paper's figures and numbers.

@@ -39,8 +39,8 @@ mod told_apart;
 mod tolerance;
 mod trial;
 
-use super::{Artefact, Budget, Experiment, Pictured, picture};
 use edifice_facade_grammar::Method;
+use edifice_frame::{Artefact, Budget, Experiment, Pictured, picture};
 
 /// This project's configuration of approximate dynamic programming.
 const BEST: Method = Method::Lagrangian;

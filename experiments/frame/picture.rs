@@ -5,7 +5,7 @@ use edifice_report::{Colour, Tile, Tiles, category};
 use edifice_shape::Facade;
 
 /// Colour of a material, muted so that elements stand out from the wall.
-pub(crate) fn material(label: &str) -> Colour {
+pub fn material(label: &str) -> Colour {
     let [r, g, b] = match leading_word(label).as_str() {
         "wall" => [0xe9, 0xdf, 0xcd],
         "window" | "glass" => [0x7d, 0xa3, 0xbd],
@@ -33,7 +33,7 @@ pub(crate) fn material(label: &str) -> Colour {
 }
 
 /// A layout as a panel.
-pub(crate) fn tiles(title: impl Into<String>, facade: &Facade) -> Tiles {
+pub fn tiles(title: impl Into<String>, facade: &Facade) -> Tiles {
     let tiles = facade.regions.iter().map(|region| Tile {
         x: region.rect.x,
         y: region.rect.y,

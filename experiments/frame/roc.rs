@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 /// The chance that a score of `positive` is above one of `negative`, ties counting half: 1/2 where nothing tells them apart, and of no scores.
-pub(crate) fn area_under_curve(positive: &[f64], negative: &[f64]) -> f64 {
+pub fn area_under_curve(positive: &[f64], negative: &[f64]) -> f64 {
     if positive.is_empty() || negative.is_empty() {
         return 0.5;
     }
