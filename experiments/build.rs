@@ -1,4 +1,4 @@
-//! What the program is built from, for the keys of results and for what reports say of themselves: `OUT_DIR/sources.rs`, a value of
+//! The sources that the program is built from, for the keys of results and for what reports say of themselves: `OUT_DIR/sources.rs`, a value of
 //! `edifice_frame::Sources` with digests of the sources of each crate of this workspace and the commit.
 //!
 //! A crate's digest is SHA-256 over the names and bytes of the files of its folder (without its tests and without the folders of other

@@ -6,6 +6,6 @@ use super::{Experiment, Sources};
 pub struct Program {
     /// Every paper's experiment, in the order of the report.
     pub experiments: &'static [&'static Experiment],
-    /// What it was built from.
+    /// The sources that it was built from.
     pub sources: Sources,
 }

@@ -1,4 +1,4 @@
-//! What the program knows of itself: the sources that it was built from, and the documents of its reports.
+//! The program itself: the sources that it was built from, and the documents of its reports.
 
 use std::path::Path;
 
