@@ -37,6 +37,7 @@ AT_THE_ROOT = {
     "edifice-shape": ["generic", "city_proceduralization"],
     "edifice-layout": ["generic", "facade_grammar"],
     "edifice-io": ["generic"],
+    "edifice-io-city": ["city_proceduralization"],
     "edifice-structure-completion": ["structure_completion"],
     "edifice-procedural-logic": ["procedural_logic"],
     "edifice-building-exteriors": ["building_exteriors"],
