@@ -8,6 +8,12 @@ use edifice_base::Result;
 /// The last values made, by key. A value depends on its key alone, so that results do not depend on which task made it.
 pub struct Shared<V>(Mutex<VecDeque<(String, Arc<V>)>>);
 
+impl<V> Default for Shared<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// Values that are kept.
 const KEPT: usize = 64;
 
