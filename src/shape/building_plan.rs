@@ -15,7 +15,8 @@ pub use soundness::Soundness;
 pub struct PlanUnion {
     xs: Vec<f64>,
     ys: Vec<f64>,
-    /// Column-major: cell (i, j) at `i * rows + j`.
+    /// Column-major with a border of outside cells all around, so that every cell of the grid has four neighbours: cell (i, j) at
+    /// `(i + 1) * (rows + 2) + j + 1`.
     inside: Vec<bool>,
 }
 
@@ -42,15 +43,7 @@ impl PlanUnion {
     }
 
     fn on_grid(xs: Vec<f64>, ys: Vec<f64>, rectangles: &[Rect]) -> Self {
-        let (columns, rows) = (xs.len().saturating_sub(1), ys.len().saturating_sub(1));
-        let mut inside = vec![false; columns * rows];
-        for r in rectangles {
-            let (i0, i1) = (nearest(&xs, r.x), nearest(&xs, r.right()));
-            let (j0, j1) = (nearest(&ys, r.y), nearest(&ys, r.top()));
-            for i in i0..i1 {
-                inside[i * rows + j0..i * rows + j1].fill(true);
-            }
-        }
+        let inside = cells(&xs, &ys, rectangles);
         Self { xs, ys, inside }
     }
 
@@ -62,9 +55,18 @@ impl PlanUnion {
         self.ys.len().saturating_sub(1)
     }
 
-    fn cell(&self, i: isize, j: isize) -> bool {
-        let (columns, rows) = (self.columns() as isize, self.rows() as isize);
-        (0..columns).contains(&i) && (0..rows).contains(&j) && self.inside[(i * rows + j) as usize]
+    /// Place of a cell of the grid; its neighbours across are a [`PlanUnion::column`] away, those along one.
+    fn place(&self, i: usize, j: usize) -> usize {
+        (i + 1) * self.column() + j + 1
+    }
+
+    /// Cells from one column to the next.
+    fn column(&self) -> usize {
+        self.rows() + 2
+    }
+
+    fn cell(&self, i: usize, j: usize) -> bool {
+        self.inside[self.place(i, j)]
     }
 
     /// Area, in squared units.
@@ -72,7 +74,7 @@ impl PlanUnion {
         let mut area = 0.0;
         for i in 0..self.columns() {
             for j in 0..self.rows() {
-                if self.cell(i as isize, j as isize) {
+                if self.cell(i, j) {
                     area += (self.xs[i + 1] - self.xs[i]) * (self.ys[j + 1] - self.ys[j]);
                 }
             }
@@ -82,7 +84,9 @@ impl PlanUnion {
 
     /// Length of the whole boundary, courtyards included.
     pub fn perimeter(&self) -> f64 {
-        self.edges().map(|(edge, _)| edge.end - edge.start).sum()
+        let mut perimeter = 0.0;
+        self.edges(|edge, _| perimeter += edge.end - edge.start);
+        perimeter
     }
 
     /// Smallest rectangle around the union; `None` when it is empty.
@@ -94,7 +98,8 @@ impl PlanUnion {
 
     /// The boundary as maximal straight edges, by side, place and start.
     pub fn outline(&self) -> Vec<PlanEdge> {
-        let mut edges: Vec<PlanEdge> = self.edges().map(|(edge, _)| edge).collect();
+        let mut edges = Vec::new();
+        self.edges(|edge, _| edges.push(edge));
         edges.sort_by(|a, b| {
             let key = |e: &PlanEdge| (e.side as usize, e.at, e.start);
             key(a)
@@ -115,43 +120,70 @@ impl PlanUnion {
         merged
     }
 
-    /// Sides of inside cells that border an outside cell, with that outside cell.
-    fn edges(&self) -> impl Iterator<Item = (PlanEdge, (isize, isize))> + '_ {
-        let cells = (0..self.columns()).flat_map(|i| (0..self.rows()).map(move |j| (i, j)));
-        cells
-            .filter(|&(i, j)| self.cell(i as isize, j as isize))
-            .flat_map(|(i, j)| Side::ALL.map(|side| (i, j, side)))
-            .filter_map(|(i, j, side)| {
-                let (a, b) = (i as isize, j as isize);
-                let (at, start, end, outside) = match side {
-                    Side::Front => (self.ys[j], self.xs[i], self.xs[i + 1], (a, b - 1)),
-                    Side::Back => (self.ys[j + 1], self.xs[i], self.xs[i + 1], (a, b + 1)),
-                    Side::Left => (self.xs[i], self.ys[j], self.ys[j + 1], (a - 1, b)),
-                    Side::Right => (self.xs[i + 1], self.ys[j], self.ys[j + 1], (a + 1, b)),
-                };
-                let edge = PlanEdge {
-                    side,
-                    at,
-                    start,
-                    end,
-                };
-                (!self.cell(outside.0, outside.1)).then_some((edge, outside))
-            })
+    /// Tells the sides of inside cells that border an outside cell, each with the place of that outside cell: cell by cell, and of a cell in
+    /// the order of [`Side::ALL`].
+    fn edges(&self, mut tell: impl FnMut(PlanEdge, usize)) {
+        for i in 0..self.columns() {
+            for j in 0..self.rows() {
+                if self.cell(i, j) {
+                    self.edges_of(i, j, &mut tell);
+                }
+            }
+        }
     }
 
-    /// Outside cells that are joined to the far outside, with a margin of one cell around the grid.
+    fn edges_of(&self, i: usize, j: usize, tell: &mut impl FnMut(PlanEdge, usize)) {
+        let place = self.place(i, j);
+        for side in Side::ALL {
+            let outside = match side {
+                Side::Front => place - 1,
+                Side::Back => place + 1,
+                Side::Left => place - self.column(),
+                Side::Right => place + self.column(),
+            };
+            if self.inside[outside] {
+                continue;
+            }
+            let (at, [start, end]) = match side {
+                Side::Front => (self.ys[j], [self.xs[i], self.xs[i + 1]]),
+                Side::Back => (self.ys[j + 1], [self.xs[i], self.xs[i + 1]]),
+                Side::Left => (self.xs[i], [self.ys[j], self.ys[j + 1]]),
+                Side::Right => (self.xs[i + 1], [self.ys[j], self.ys[j + 1]]),
+            };
+            let edge = PlanEdge {
+                side,
+                at,
+                start,
+                end,
+            };
+            tell(edge, outside);
+        }
+    }
+
+    /// Outside cells that are joined to the far outside, by their places; the border is.
     fn open_air(&self) -> Vec<bool> {
-        let (columns, rows) = (self.columns() as isize + 2, self.rows() as isize + 2);
-        let index = |i: isize, j: isize| ((i + 1) * rows + j + 1) as usize;
-        let mut open = vec![false; (columns * rows) as usize];
-        let mut queue = vec![(-1, -1)];
-        open[0] = true;
-        while let Some((i, j)) = queue.pop() {
-            for (a, b) in [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)] {
-                let in_grid = (-1..columns - 1).contains(&a) && (-1..rows - 1).contains(&b);
-                if in_grid && !self.cell(a, b) && !open[index(a, b)] {
-                    open[index(a, b)] = true;
-                    queue.push((a, b));
+        let (columns, rows, column) = (self.columns(), self.rows(), self.column());
+        let mut open = vec![true; self.inside.len()];
+        for i in 0..columns {
+            let first = self.place(i, 0);
+            open[first..first + rows].fill(false);
+        }
+        // From the border inwards.
+        let across = (0..columns).flat_map(|i| [(i, 0), (i, rows.saturating_sub(1))]);
+        let along = (0..rows).flat_map(|j| [(0, j), (columns.saturating_sub(1), j)]);
+        let mut queue: Vec<usize> = Vec::new();
+        for (i, j) in across.chain(along) {
+            let place = self.place(i, j);
+            if !self.inside[place] && !open[place] {
+                open[place] = true;
+                queue.push(place);
+            }
+        }
+        while let Some(place) = queue.pop() {
+            for next in [place - 1, place + 1, place - column, place + column] {
+                if !self.inside[next] && !open[next] {
+                    open[next] = true;
+                    queue.push(next);
                 }
             }
         }
@@ -171,19 +203,33 @@ pub struct Visibility {
 /// The length of the boundary of the union of `part`, and of the share that is seen from outside the union of `whole`.
 /// The rectangles of `part` are among those of `whole`.
 pub fn visibility(part: &[Rect], whole: &[Rect]) -> Visibility {
-    let (xs, ys) = grid_lines(whole);
-    let whole = PlanUnion::on_grid(xs.clone(), ys.clone(), whole);
-    let part = PlanUnion::on_grid(xs, ys, part);
+    let whole = PlanUnion::new(whole);
     let open = whole.open_air();
-    let rows = whole.rows() as isize + 2;
+    let inside = cells(&whole.xs, &whole.ys, part);
+    let part = PlanUnion { inside, ..whole };
     let (mut perimeter, mut visible) = (0.0, 0.0);
-    for (edge, (i, j)) in part.edges() {
+    part.edges(|edge, outside| {
         perimeter += edge.end - edge.start;
-        if open[((i + 1) * rows + j + 1) as usize] {
+        if open[outside] {
             visible += edge.end - edge.start;
         }
-    }
+    });
     Visibility { perimeter, visible }
+}
+
+/// The cells that some rectangle covers, in the order of [`PlanUnion`].
+fn cells(xs: &[f64], ys: &[f64], rectangles: &[Rect]) -> Vec<bool> {
+    let column = ys.len().saturating_sub(1) + 2;
+    let mut inside = vec![false; (xs.len().saturating_sub(1) + 2) * column];
+    for r in rectangles {
+        let (i0, i1) = (nearest(xs, r.x), nearest(xs, r.right()));
+        let (j0, j1) = (nearest(ys, r.y), nearest(ys, r.top()));
+        for i in i0..i1 {
+            let first = (i + 1) * column + 1;
+            inside[first + j0..first + j1].fill(true);
+        }
+    }
+    inside
 }
 
 /// The distinct vertical and horizontal edge coordinates of the rectangles.
@@ -214,3 +260,6 @@ fn nearest(lines: &[f64], value: f64) -> usize {
     }
     after
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,7 +32,6 @@ impl PlanUnion {
 
     /// Number of parts joined by the sides of cells.
     fn parts(&self) -> usize {
-        let rows = self.rows();
         let mut seen = vec![false; self.inside.len()];
         let mut parts = 0;
         for start in 0..self.inside.len() {
@@ -42,15 +41,12 @@ impl PlanUnion {
             parts += 1;
             seen[start] = true;
             let mut queue = vec![start];
-            while let Some(cell) = queue.pop() {
-                let (i, j) = ((cell / rows) as isize, (cell % rows) as isize);
-                for (a, b) in [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)] {
-                    if self.cell(a, b) {
-                        let next = a as usize * rows + b as usize;
-                        if !seen[next] {
-                            seen[next] = true;
-                            queue.push(next);
-                        }
+            while let Some(place) = queue.pop() {
+                let column = self.column();
+                for next in [place - 1, place + 1, place - column, place + column] {
+                    if self.inside[next] && !seen[next] {
+                        seen[next] = true;
+                        queue.push(next);
                     }
                 }
             }
@@ -60,23 +56,25 @@ impl PlanUnion {
 
     fn has_courtyard(&self) -> bool {
         let open = self.open_air();
-        let rows = self.rows() + 2;
-        (0..self.columns()).any(|i| {
-            (0..self.rows())
-                .any(|j| !self.inside[i * self.rows() + j] && !open[(i + 1) * rows + j + 1])
-        })
+        self.inside
+            .iter()
+            .zip(open)
+            .any(|(inside, open)| !inside && !open)
     }
 
+    /// Corners of cells, of which two opposite ones are inside.
     fn pinches(&self) -> usize {
-        let (columns, rows) = (self.columns() as isize, self.rows() as isize);
-        let corners = (0..=columns).flat_map(|i| (0..=rows).map(move |j| (i, j)));
-        corners
-            .filter(|&(i, j)| {
-                let near = [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)];
-                let [a, b, c, d] = near.map(|(i, j)| self.cell(i, j));
-                a == c && b == d && a != b
-            })
-            .count()
+        let mut pinches = 0;
+        for i in 0..=self.columns() {
+            for j in 0..=self.rows() {
+                // Of the corner at the lower left of cell (i, j).
+                let above = self.place(i, j);
+                let below = above - self.column();
+                let [a, b, c, d] = [below - 1, above - 1, above, below].map(|p| self.inside[p]);
+                pinches += usize::from(a == c && b == d && a != b);
+            }
+        }
+        pinches
     }
 
     /// Least run of inside cells and least run of outside cells between inside ones, over all rows
@@ -84,11 +82,11 @@ impl PlanUnion {
     fn extents(&self) -> (f64, f64) {
         let mut least = (f64::INFINITY, f64::INFINITY);
         for j in 0..self.rows() {
-            let row = (0..self.columns()).map(|i| self.inside[i * self.rows() + j]);
+            let row = (0..self.columns()).map(|i| self.cell(i, j));
             runs(&self.xs, row, &mut least);
         }
         for i in 0..self.columns() {
-            let column = (0..self.rows()).map(|j| self.inside[i * self.rows() + j]);
+            let column = (0..self.rows()).map(|j| self.cell(i, j));
             runs(&self.ys, column, &mut least);
         }
         least
