@@ -47,24 +47,29 @@ impl PlanUnion {
         Self { xs, ys, inside }
     }
 
+    #[inline]
     fn columns(&self) -> usize {
         self.xs.len().saturating_sub(1)
     }
 
+    #[inline]
     fn rows(&self) -> usize {
         self.ys.len().saturating_sub(1)
     }
 
     /// Place of a cell of the grid; its neighbours across are a [`PlanUnion::column`] away, those along one.
+    #[inline]
     fn place(&self, i: usize, j: usize) -> usize {
         (i + 1) * self.column() + j + 1
     }
 
     /// Cells from one column to the next.
+    #[inline]
     fn column(&self) -> usize {
         self.rows() + 2
     }
 
+    #[inline]
     fn cell(&self, i: usize, j: usize) -> bool {
         self.inside[self.place(i, j)]
     }

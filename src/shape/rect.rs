@@ -58,11 +58,13 @@ impl Rect {
     }
 
     /// Right edge.
+    #[inline]
     pub fn right(&self) -> f64 {
         self.x + self.width
     }
 
     /// Top edge.
+    #[inline]
     pub fn top(&self) -> f64 {
         self.y + self.height
     }

@@ -143,7 +143,7 @@ fn a_runner_that_is_killed_again_and_again_loses_nothing() {
 
 #[test]
 fn two_runners_at_once() {
-    let folder = folder(2000);
+    let folder = folder(1000);
     let folder = folder.path();
     let whole = undisturbed(folder);
     // On one shard, the second says that another runs it.
