@@ -120,7 +120,7 @@ fn weights_come_back_by_the_unbiased_update_only() {
         PaperModel::unbiased_weights(&model.score, &drawn, &settings, 1, &unwatched).unwrap();
     let few = Settings {
         rounds: 4,
-        ..settings.clone()
+        ..settings
     };
     let started =
         || PaperModel::unbiased_weights(&model.score, &drawn, &few, 1, &unwatched).unwrap();
