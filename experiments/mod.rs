@@ -4,7 +4,8 @@
 //! # How to add a paper
 //! 1. Write the crate `experiments/<slug>/` with a `pub const EXPERIMENT: Experiment` that lists its artefacts: the name of a
 //!    table or figure (`table_1`, `figure_14`), a title, and a function `fn(&mut Context) -> Result<()>`.
-//! 2. Add `pub use edifice_experiments_<slug> as <slug>;` and `&<slug>::EXPERIMENT` to [`ALL`] below.
+//! 2. Name it in the root's manifest and in `experiments/Cargo.toml` as its neighbours are, add `pub use edifice_experiments_<slug> as <slug>;` and
+//!    `&<slug>::EXPERIMENT` to [`ALL`] below.
 //! 3. Write `experiments/bin/<slug>.rs` and its `[[bin]]` in `experiments/Cargo.toml`: `fn main() -> std::process::ExitCode { edifice_experiments::main(&edifice_experiments::<slug>::EXPERIMENT) }`.
 //!
 //! # What an artefact's function does

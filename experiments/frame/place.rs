@@ -1,4 +1,4 @@
-//! The place of a fault in a sweep file, and the word that was probably meant.
+//! The place of a fault in a text, and the word that was probably meant.
 
 use std::ops::Range;
 

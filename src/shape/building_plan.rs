@@ -39,10 +39,6 @@ impl PlanUnion {
     /// Complexity: `O(n^3)` for `n` rectangles, meant for the few boxes of a house.
     pub fn new(rectangles: &[Rect]) -> Self {
         let (xs, ys) = grid_lines(rectangles);
-        Self::on_grid(xs, ys, rectangles)
-    }
-
-    fn on_grid(xs: Vec<f64>, ys: Vec<f64>, rectangles: &[Rect]) -> Self {
         let inside = cells(&xs, &ys, rectangles);
         Self { xs, ys, inside }
     }

@@ -17,7 +17,7 @@ ROOT = subprocess.check_output(["git", "rev-parse", "--show-toplevel"], text=Tru
 # Where sources stood before the crates.
 MOVED = {"src/error.rs": "src/base", "src/rng.rs": "src/base", "src/file.rs": "src/base",
          "src/tables/": "src/model/tables/", "src/methods/mod.rs": "src/lib.rs", "src/bin/": "experiments/bin/",
-         "experiments/frame/datasets.rs": "datasets/mod.rs", "experiments/sweep/sources.rs": "experiments/frame/sources.rs"}
+         "experiments/frame/datasets.rs": "datasets/mod.rs", "experiments/sweep/sources.rs": "experiments/frame"}
 # What all experiments share stands in the frame today.
 MOVED.update({f"experiments/{name}.rs": "experiments/frame" for name in ("averages", "layouts", "parsed", "picture", "roc")})
 
