@@ -372,6 +372,15 @@ mod tests {
         assert!(matches!(length, Err(BoostingError::Length { row: 1, .. })));
         let value = Boosting::learn(&[vec![f64::NAN]], &[0.0], settings, &unwatched);
         assert_eq!(value, Err(BoostingError::Value { row: 0 }));
+        let more = Boosting::learn(
+            &[vec![1.0], vec![2.0]],
+            &[0.0, 1.0, 0.5],
+            settings,
+            &unwatched,
+        );
+        assert_eq!(more, Err(BoostingError::Value { row: 2 }));
+        let fewer = Boosting::learn(&[vec![1.0], vec![2.0]], &[0.0], settings, &unwatched);
+        assert_eq!(fewer, Err(BoostingError::Value { row: 1 }));
         // One value only: the prior.
         let constant = Boosting::learn(
             &vec![vec![1.0]; 10],

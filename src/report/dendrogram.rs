@@ -280,6 +280,17 @@ mod tests {
             for pair in lines.windows(2) {
                 assert!(pair[1] - pair[0] >= size, "{count}: {pair:?}");
             }
+            if !names[0].vertical {
+                // Names end left of the marks of their leaves, which are left of the tree.
+                let left = out.marks.iter().filter_map(|mark| match mark {
+                    Mark::Fill { points, .. } => Some(points),
+                    _ => None,
+                });
+                let left = left.flatten().map(|p| p.0);
+                let left = left.fold(f64::INFINITY, f64::min);
+                let ends = |t: &&&Text| t.anchor == Anchor::End && t.at.0 <= left;
+                assert_eq!(names.iter().filter(ends).count(), count);
+            }
             let inside = |&(x, y): &(f64, f64)| {
                 (0.0..=area.width).contains(&x) && (0.0..=area.height).contains(&y)
             };

@@ -210,3 +210,64 @@ pub(crate) fn muted(out: &mut Drawing, at: (f64, f64), text: &str, size: f64, an
         vertical: false,
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::drawing::Mark;
+    use super::*;
+
+    #[test]
+    fn a_legend_holds_its_entries_and_lies_in_its_corner() {
+        let plot = Area {
+            x: 50.0,
+            y: 30.0,
+            width: 400.0,
+            height: 300.0,
+        };
+        let names = ["one", "a long name", "", "three", "four"];
+        let entries = names.map(|name| (Key::Square, INK, name));
+        for corner in [
+            Corner::TopLeft,
+            Corner::TopRight,
+            Corner::BottomLeft,
+            Corner::BottomRight,
+        ] {
+            let mut out = Drawing::new(500.0, 400.0);
+            legend(&mut out, plot, corner, &entries);
+            let ground = out.marks.iter().find_map(|mark| match mark {
+                Mark::Fill { points, .. } => Some(points.clone()),
+                _ => None,
+            });
+            let ground = ground.unwrap();
+            let ends = |f: fn(&(f64, f64)) -> f64| {
+                let all = ground.iter().map(f);
+                (
+                    all.clone().fold(f64::INFINITY, f64::min),
+                    all.fold(f64::NEG_INFINITY, f64::max),
+                )
+            };
+            let (xs, ys) = (ends(|p| p.0), ends(|p| p.1));
+            assert!(
+                xs.0 >= plot.x && xs.1 <= plot.right() && ys.0 >= plot.y && ys.1 <= plot.bottom()
+            );
+            let right = matches!(corner, Corner::TopRight | Corner::BottomRight);
+            let bottom = matches!(corner, Corner::BottomLeft | Corner::BottomRight);
+            assert_eq!(xs.1 > plot.x + 0.6 * plot.width, right);
+            assert_eq!(ys.1 > plot.y + 0.6 * plot.height, bottom);
+            let texts = out.marks.iter().filter_map(|mark| match mark {
+                Mark::Text(text) => Some(text),
+                _ => None,
+            });
+            let texts: Vec<_> = texts.collect();
+            assert_eq!(texts.len(), 4);
+            for text in texts {
+                let half = 0.5 * text.size;
+                assert!(
+                    text.at.1 - half >= ys.0 && text.at.1 + half <= ys.1,
+                    "{text:?} {ys:?}"
+                );
+                assert!(text.at.0 >= xs.0 && text.at.0 + text_width(&text.text, text.size) <= xs.1);
+            }
+        }
+    }
+}

@@ -214,4 +214,11 @@ fn bad_rules_and_shapes_are_refused_with_their_place() {
         r#"{"features":[{"properties":{"rule":"A"},"geometry":{"coordinates":[[[0,0],[1,0]]]}}]}"#,
     );
     assert!(text.contains("features[0].geometry.coordinates"), "{text}");
+    // A rectangle that is a line, in either direction.
+    for ring in ["[[0,0],[1,0],[1,0],[0,0]]", "[[0,0],[0,0],[0,1],[0,1]]"] {
+        let text = shapes(&format!(
+            r#"{{"features":[{{"properties":{{"rule":"A"}},"geometry":{{"coordinates":[{ring}]}}}}]}}"#
+        ));
+        assert!(text.contains("features[0].geometry.coordinates"), "{text}");
+    }
 }

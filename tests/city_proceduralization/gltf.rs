@@ -116,6 +116,30 @@ fn transforms_strips_and_files_beside() {
 }
 
 #[test]
+fn primitives_of_one_mesh_have_points_of_their_own() {
+    // The same four points by two accessors: one primitive names its corners, one takes all.
+    let data = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAQAAAAAAAAAAAAAAAAAAAoEAAAAAAAACAQAAAoEAAAAAA";
+    let mut mesh = strip();
+    let accessor = mesh["accessors"][0].clone();
+    mesh["accessors"].as_array_mut().unwrap().push(accessor);
+    let second = json!({ "attributes": { "POSITION": 1 }, "mode": 5 });
+    let primitives = mesh["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.push(second);
+    let city = gltf::parse(document(48, data, mesh).as_bytes(), Path::new("two.gltf")).unwrap();
+    let wall = &city.buildings[0].mesh;
+    assert_eq!((wall.positions.len(), wall.triangles.len()), (8, 4));
+    let ends = |t: &[[u32; 3]]| {
+        t.iter()
+            .flatten()
+            .copied()
+            .min()
+            .zip(t.iter().flatten().copied().max())
+    };
+    assert_eq!(ends(&wall.triangles[..2]), Some((0, 3)));
+    assert_eq!(ends(&wall.triangles[2..]), Some((4, 7)));
+}
+
+#[test]
 fn broken_files_are_refused_by_place() {
     let data = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAQAAAAAAAAAAAAAAAAAAAoEAAAAAAAACAQAAAoEAAAAAA";
     let complaint = |change: &dyn Fn(&mut serde_json::Value)| {

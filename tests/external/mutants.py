@@ -1,24 +1,39 @@
 #!/usr/bin/env python3
-"""Mutation testing of a random sample (needs `cargo install cargo-mutants --locked`).
+"""Mutation testing of a random sample by every test of the workspace.
 
-    tests/external/mutants.py GROUP NUMBER [--seed S] [--out DIR] [--survivors] --in TREE
+    tests/external/mutants.py --in TREE --out DIR [--proofs 200] [--rest 200] [--seed S]
 
-GROUP is `proofs` (grammar bounds, cost and derivation of grammars, elimination, expectation maximization, exact solids) or
-`rest` (every other file of the library's crates). The sample is the first NUMBER mutants of the group after a shuffle with the
-seed, so that a larger number holds a smaller one. Each crate's mutants are judged by the crate's own tests
-(`.cargo/mutants.toml`); with `--survivors` those that they missed are judged by the programs at the root that test the crate
-(`AT_THE_ROOT`) as well. What is left is written to DIR/missed.txt. Mutants run in
-TREE, a clean copy of the repository that is changed in place; outcomes that DIR holds already are kept, so that a run that was
-stopped goes on.
+Needs `cargo install cargo-mutants --locked` and `pip install tree-sitter tree-sitter-rust`. The groups are `proofs` (grammar
+bounds, cost and derivation of grammars, elimination, expectation maximization, exact solids) and `rest` (every other file of
+the library's crates). A group's sample is its first mutants after a shuffle with the seed, so that a larger number holds a
+smaller one.
+
+All mutants are written into TREE, a clean copy of the repository that is changed in place, each behind a switch
+(`mutant_schemata.py`), and built once. Then every test runs in a process of its own without a mutant, which tells its time and
+the mutants that it comes past; then each mutant is judged by the tests that come past it, those of its own crate first and the
+quick ones before the slow ones, until one of them fails twice; tests of more than a minute do not judge. Mutants that do not compile are `unviable`; those that no
+switch can express, as in constants, are judged by the tests of their crate after a build of their own.
+
+DIR keeps outcomes as they come, so that a run that was stopped goes on: `build.json`, `tests.json`, `outcomes.jsonl`; what no
+test caught is written to `missed.txt` with the number of tests that came past.
 """
 
 import argparse
+import concurrent.futures
 import json
+import os
 import pathlib
 import random
 import re
+import resource
+import shutil
 import subprocess
 import sys
+import tempfile
+import threading
+import time
+
+import mutant_schemata
 
 PROOFS = re.compile(
     r"src/methods/facade_grammar/lagrangian/"
@@ -27,111 +42,240 @@ PROOFS = re.compile(
     r"|network/structure/incomplete\.rs|gmm/(block|missing)\.rs)"
     r"|src/shape/solid/"
 )
-# The command line, the studio and the experiments are judged end to end.
+# The command line, the studio and the experiments are not drawn: they call what is.
 ELSEWHERE = re.compile(r"src/(cli|studio|editing)/|experiments/|datasets/|src/main\.rs")
-# Programs in `tests/` of the root that judge survivors of a crate.
-AT_THE_ROOT = {
-    "edifice-model": ["model"],
-    "edifice-grammar": ["facade_grammar", "generic"],
-    "edifice-facade-grammar": ["facade_grammar"],
-    "edifice-shape": ["generic", "city_proceduralization"],
-    "edifice-layout": ["generic", "facade_grammar"],
-    "edifice-io": ["generic"],
-    "edifice-io-city": ["city_proceduralization"],
-    "edifice-structure-completion": ["structure_completion"],
-    "edifice-procedural-logic": ["procedural_logic"],
-    "edifice-building-exteriors": ["building_exteriors"],
-    "edifice-city-proceduralization": ["city_proceduralization"],
-}
-KINDS = {"CaughtMutant": "caught", "MissedMutant": "missed", "Unviable": "unviable", "Timeout": "timeout"}
+JOBS = 2
+# Of one process; a mutant of elimination took 14 GB.
+MEMORY = 12 << 30
 
 
-def sample(tree, out, group, number, seed):
-    """The names of the first mutants of the group in an order drawn by the seed, with their crates."""
-    kept = out / f"list-{subprocess.check_output(['git', 'rev-parse', 'HEAD'], cwd=tree, text=True).strip()}.json"
-    if not kept.exists():
-        command = ["cargo", "mutants", "--workspace", "--list", "--json"]
-        kept.write_bytes(subprocess.run(command, cwd=tree, check=True, stdout=subprocess.PIPE).stdout)
-    mutants = [m for m in json.loads(kept.read_text()) if bool(PROOFS.match(m["file"])) == (group == "proofs")]
-    mutants = sorted((m["name"], m["package"]) for m in mutants if not ELSEWHERE.match(m["file"]))
-    random.Random(seed).shuffle(mutants)
-    print(f"{group}: {min(number, len(mutants))} of {len(mutants)} mutants, seed {seed}", file=sys.stderr)
-    return mutants[:number]
+def call(command, tree, **more):
+    """Runs a command in the tree and returns what it printed."""
+    return subprocess.run(command, cwd=tree, check=True, stdout=subprocess.PIPE, text=True, **more).stdout
 
 
-def outcomes(out):
-    """What became of each mutant so far: its name, its kind, the seconds it took. Survivors' folders sort last."""
-    found = {}
-    for path in sorted(out.glob("*/mutants.out/outcomes.json")):
-        for outcome in json.loads(path.read_text())["outcomes"]:
-            if outcome["summary"] in KINDS:
-                seconds = sum(phase["duration"] for phase in outcome["phase_results"])
-                found[outcome["scenario"]["Mutant"]["name"]] = (KINDS[outcome["summary"]], seconds)
+def sample(tree, numbers, seed):
+    """The chosen mutants by number, each with its group."""
+    listed = json.loads(call(["cargo", "mutants", "--workspace", "--list", "--json"], tree))
+    chosen = []
+    for group, most in numbers.items():
+        of_group = [m for m in listed if bool(PROOFS.match(m["file"])) == (group == "proofs") and not ELSEWHERE.match(m["file"])]
+        of_group.sort(key=lambda m: (m["name"], m["package"]))
+        random.Random(seed).shuffle(of_group)
+        print(f"{group}: {min(most, len(of_group))} of {len(of_group)} mutants, seed {seed}", file=sys.stderr)
+        chosen += [m | {"group": group} for m in of_group[:most]]
+    return dict(enumerate(chosen))
+
+
+def root_files(tree):
+    """The root file of each package's library."""
+    packages = json.loads(call(["cargo", "metadata", "--no-deps", "--format-version", "1"], tree))["packages"]
+    return {p["name"]: t["src_path"] for p in packages for t in p["targets"] if "lib" in t["kind"]}
+
+
+def restore(tree):
+    """Takes back all changes of the tree."""
+    subprocess.run(["git", "checkout", "--quiet", "--", "."], cwd=tree, check=True)
+
+
+def compile_errors(tree, command):
+    """The primary places (file, line) of the errors of a build."""
+    done = subprocess.run([*command, "--message-format", "json"], cwd=tree, check=False, stdout=subprocess.PIPE, text=True)
+    places = set()
+    for line in done.stdout.splitlines():
+        told = json.loads(line)
+        if told["reason"] == "compiler-message" and told["message"]["level"] == "error":
+            for span in (s for s in told["message"]["spans"] if s["is_primary"]):
+                # A macro's own text is elsewhere; where it is called is what counts.
+                while span["expansion"]:
+                    span = span["expansion"]["span"]
+                places.add((span["file_name"], span["line_start"]))
+    if done.returncode != 0 and not places:
+        sys.exit("the tree does not build, and not because of a mutant")
+    return places
+
+
+def switch_all(tree, mutants):
+    """Instruments the tree with all mutants that compile as switches; returns the numbers of the others."""
+    roots, left_out = root_files(tree), set()
+    while True:
+        restore(tree)
+        tried = {n: m for n, m in mutants.items() if n not in left_out}
+        left_out |= set(mutant_schemata.instrument(tree, tried, roots))
+        places = compile_errors(tree, ["cargo", "check", "--workspace", "--keep-going"])
+        if not places:
+            return left_out
+        wrong = set()
+        for file, line in places:
+            lines = pathlib.Path(tree, file).read_text().split("\n")
+            near = [(abs(line - 1 - at), int(n)) for at, text in enumerate(lines) for n in re.findall(r"crate::mutant\((\d+)\)", text)]
+            if not near:
+                sys.exit(f"an error in {file}:{line}, which holds no mutant")
+            wrong |= {n for distance, n in near if distance == min(near)[0]}
+        print(f"{len(wrong)} mutants do not compile as switches", file=sys.stderr)
+        left_out |= wrong
+
+
+def programs(tree):
+    """The test programs: their package, its folder and the built file."""
+    told = call(["cargo", "test", "--workspace", "--no-run", "--tests", "--message-format", "json"], tree)
+    found = []
+    for line in map(json.loads, told.splitlines()):
+        if line["reason"] == "compiler-artifact" and line["profile"]["test"] and line["executable"]:
+            folder = pathlib.Path(line["manifest_path"]).parent
+            package = re.split(r"[#@]", line["package_id"].rsplit("/", 1)[-1])
+            found.append((package[-2] if len(package) > 2 else line["target"]["name"], str(folder), line["executable"]))
     return found
 
 
-def run(tree, out, package, names, survivors=False):
-    """Runs one crate's mutants; a folder of its own, so that nothing of an earlier run is lost."""
-    stem = f"zz-{package}" if survivors else package
-    folder = out / f"{stem}-{len(list(out.glob(stem + '-*')))}"
-    folder.mkdir(parents=True)
-    command = ["cargo", "mutants", "--in-place", "--package", package, "--output", folder, "--no-times", "--colors=never"]
-    for name in names:
-        command += ["--re", f"^{re.escape(name)}$"]
-    # Mutants that delete a field of a struct pass every `--re` (cargo-mutants 27.1): only the files of the sample are asked.
-    for file in sorted({name.split(":")[0] for name in names}):
-        command += ["--file", file]
-    if survivors:
-        programs = AT_THE_ROOT.get(package, ["generic"])
-        # Not the arguments of the crate's own tests.
-        command += ["--config", "/dev/null", "--test-package", "edifice", "--"] + [word for p in programs for word in ("--test", p)]
-    subprocess.run(command, cwd=tree, check=False)
+def one_test(test, environment, seconds):
+    """Runs one test in a process of its own; says whether it passed in time, and its seconds."""
+    program, folder, name = test
+    scratch = tempfile.mkdtemp(prefix="mutants-")
+    limit = lambda: (resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)), os.setsid())
+    start = time.monotonic()
+    process = subprocess.Popen(
+        [program, "--exact", name, "--test-threads=1"],
+        cwd=folder,
+        env=os.environ | {"TMPDIR": scratch, "CARGO": "cargo", "CARGO_MANIFEST_DIR": folder} | environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        preexec_fn=limit,
+    )
+    try:
+        passed = process.wait(seconds) == 0
+    except subprocess.TimeoutExpired:
+        passed = False
+    try:
+        os.killpg(process.pid, 9)
+    except ProcessLookupError:
+        pass
+    process.wait()
+    shutil.rmtree(scratch, ignore_errors=True)
+    return passed, time.monotonic() - start
+
+
+def baseline(tree, out):
+    """Every test without a mutant: its package, whether it passed, its seconds, the mutants that it reached."""
+    kept = out / "tests.json"
+    if kept.exists():
+        return json.loads(kept.read_text())
+    tests = []
+    for package, folder, program in programs(tree):
+        listed = call([program, "--list", "--format", "terse"], folder)
+        names = [line.removesuffix(": test") for line in listed.splitlines() if line.endswith(": test")]
+        ignored = call([program, "--list", "--format", "terse", "--ignored"], folder).splitlines()
+        tests += [{"package": package, "test": [program, folder, n]} for n in names if f"{n}: test" not in ignored]
+    print(f"{len(tests)} tests", file=sys.stderr)
+
+    def run(numbered):
+        number, test = numbered
+        log = out / f"reached-{number}"
+        log.unlink(missing_ok=True)
+        passed, seconds = one_test(test["test"], {"EDIFICE_MUTANTS_REACHED": str(log)}, 900)
+        reached = sorted({int(n) for n in log.read_text().split()}) if log.exists() else []
+        log.unlink(missing_ok=True)
+        return test | {"passed": passed, "seconds": seconds, "reached": reached}
+
+    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+        tests = list(pool.map(run, enumerate(tests)))
+    kept.write_text(json.dumps(tests))
+    return tests
+
+
+def judge(number, mutant, tests, locks):
+    """What becomes of one mutant under the tests that come past it."""
+    past = [t for t in tests if number in t["reached"]]
+    past.sort(key=lambda t: (t["seconds"] > 10, t["package"] != mutant["package"], t["seconds"]))
+    spent = 0.0
+    for test in past:
+        limit = 5 * test["seconds"] + 30
+        with locks[tuple(test["test"])]:
+            # Twice, so that no test of times catches a mutant because the machine was busy.
+            for _ in range(2):
+                passed, seconds = one_test(test["test"], {"EDIFICE_MUTANT": str(number)}, limit)
+                spent += seconds
+                if passed:
+                    break
+        if not passed:
+            outcome = "timeout" if seconds >= limit else "caught"
+            return {"outcome": outcome, "by": test["test"][2], "past": len(past), "seconds": spent}
+    return {"outcome": "missed", "past": len(past), "seconds": spent}
+
+
+def alone(tree, mutant):
+    """One mutant that no switch expresses: a build of its own, and the tests of its crate."""
+    restore(tree)
+    patch = mutant["diff"].replace("--- ", "--- a/", 1).replace(f"+++ {mutant['diff'].splitlines()[1][4:]}", f"+++ b/{mutant['file']}", 1)
+    subprocess.run(["git", "apply", "--unidiff-zero", "-"], cwd=tree, check=True, input=patch, text=True)
+    silent = {"cwd": tree, "check": False, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    start = time.monotonic()
+    try:
+        if subprocess.run(["cargo", "check", "-p", mutant["package"]], **silent).returncode != 0:
+            return {"outcome": "unviable", "seconds": time.monotonic() - start}
+        passed = subprocess.run(["cargo", "test", "-p", mutant["package"], "--tests"], **silent, timeout=900).returncode == 0
+        return {"outcome": "missed" if passed else "caught", "by": "tests of the crate", "seconds": time.monotonic() - start}
+    except subprocess.TimeoutExpired:
+        return {"outcome": "timeout", "seconds": time.monotonic() - start}
+    finally:
+        restore(tree)
 
 
 def main():
-    """Runs what is missing of the sample and prints a row of the table."""
+    """Builds, runs what is missing and prints the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("group", choices=["proofs", "rest"])
-    parser.add_argument("number", type=int)
+    parser.add_argument("--proofs", type=int, default=200, help="mutants of the proofs")
+    parser.add_argument("--rest", type=int, default=200, help="mutants of everything else")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("target/mutants"))
+    parser.add_argument("--longest", type=float, default=60.0, help="seconds beyond which a test does not judge")
+    parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--in", dest="tree", type=pathlib.Path, required=True)
-    parser.add_argument("--survivors", action="store_true", help="judge what unit tests missed by the tests at the root")
-    parser.add_argument("--chunk", type=int, default=25, help="mutants between two writings of the table")
     arguments = parser.parse_args()
-    out = arguments.out.resolve() / arguments.group
+    tree, out = arguments.tree.resolve(), arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
-    chosen = sample(arguments.tree, out, arguments.group, arguments.number, arguments.seed)
-    for start in range(0, len(chosen), arguments.chunk):
-        known = outcomes(out)
-        packages = {}
-        for name, package in chosen[start : start + arguments.chunk]:
-            if name not in known:
-                packages.setdefault(package, []).append(name)
-        for package, names in sorted(packages.items()):
-            run(arguments.tree, out, package, names)
-        table(arguments.group, chosen, outcomes(out), out)
-    if arguments.survivors:
-        known, packages = outcomes(out), {}
-        for name, package in chosen:
-            if known.get(name, ("",))[0] == "missed":
-                packages.setdefault(package, []).append(name)
-        for package, names in sorted(packages.items()):
-            run(arguments.tree, out, package, names, survivors=True)
-        table(arguments.group, chosen, outcomes(out), out)
+    restore(tree)
+    mutants = sample(tree, {"proofs": arguments.proofs, "rest": arguments.rest}, arguments.seed)
+    known_switches, log = out / "build.json", out / "outcomes.jsonl"
+    if known_switches.exists():
+        left_out = set(json.loads(known_switches.read_text()))
+        mutant_schemata.instrument(tree, {n: m for n, m in mutants.items() if n not in left_out}, root_files(tree))
+    else:
+        left_out = switch_all(tree, mutants)
+    known_switches.write_text(json.dumps(sorted(left_out)))
+    tests = baseline(tree, out)
+    print(f"not passed without a mutant: {[t['test'][2] for t in tests if not t['passed']]}", file=sys.stderr)
+    tests = [t for t in tests if t["passed"] and t["seconds"] <= arguments.longest]
+    known = {o["number"]: o for o in map(json.loads, log.read_text().splitlines())} if log.exists() else {}
+    locks = {tuple(t["test"]): threading.Lock() for t in tests}
+
+    def note(number, outcome):
+        known[number] = {"number": number, "name": mutants[number]["name"], "group": mutants[number]["group"], **outcome}
+        with log.open("a") as file:
+            file.write(json.dumps(known[number]) + "\n")
+
+    todo = [n for n in mutants if n not in known and n not in left_out]
+    todo.sort(key=lambda n: sum(t["seconds"] for t in tests if n in t["reached"]))
+    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+        running = {pool.submit(judge, n, mutants[n], tests, locks): n for n in todo}
+        for future in concurrent.futures.as_completed(running):
+            note(running[future], future.result())
+    for number in sorted(left_out - set(known)):
+        note(number, alone(tree, mutants[number]))
+    table(mutants, known, out)
 
 
-def table(group, chosen, known, out):
-    """One row: how many ran, how they ended, and how long they took. Unviable mutants do not compile and count for nothing."""
-    ran = [(name, *known[name]) for name, _ in chosen if name in known]
-    count = {kind: sum(k == kind for _, k, _ in ran) for kind in KINDS.values()}
-    viable = len(ran) - count["unviable"]
-    caught = count["caught"] + count["timeout"]
-    share = 100 * caught / viable if viable else 0
-    row = [group, len(ran), *(count[k] for k in KINDS.values()), f"{share:.0f} %", f"{sum(s for *_, s in ran):.0f}"]
-    print("| group | ran | caught | missed | unviable | timeout | of the viable | seconds |")
-    print("| " + " | ".join(map(str, row)) + " |", flush=True)
-    (out / "missed.txt").write_text("".join(f"{name}\n" for name, kind, _ in ran if kind == "missed"))
+def table(mutants, known, out):
+    """A row for each group: how many ran, how they ended, and how long they took. Unviable mutants count for nothing."""
+    print("| group | ran | caught | missed | unviable | timeout | of the viable | seconds |\n" + "| --- " * 8 + "|")
+    for group in ("proofs", "rest"):
+        ran = [o for o in known.values() if o["group"] == group]
+        count = {kind: sum(o["outcome"] == kind for o in ran) for kind in ("caught", "missed", "unviable", "timeout")}
+        viable = len(ran) - count["unviable"]
+        share = 100 * (count["caught"] + count["timeout"]) / viable if viable else 0
+        seconds = sum(o["seconds"] for o in ran)
+        print("| " + " | ".join(map(str, [group, len(ran), *count.values(), f"{share:.0f} %", f"{seconds:.0f}"])) + " |")
+    missed = [o for o in known.values() if o["outcome"] == "missed"]
+    (out / "missed.txt").write_text("".join(f"{o['group']} {o.get('past', '?')} {o['name']}\n" for o in missed))
 
 
 if __name__ == "__main__":

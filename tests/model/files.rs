@@ -67,6 +67,30 @@ proptest! {
 }
 
 #[test]
+fn probabilities_that_sum_to_one_are_read_to_the_bit_and_others_made_to() {
+    // Their sum in doubles is not 1.
+    let odd = [0.3, 0.35, 0.35];
+    assert_ne!(odd.iter().sum::<f64>(), 1.0);
+    let categories = ["x", "y", "z"];
+    let network = Network::new(vec![Variable::table("a", &categories, &[], &odd)]).unwrap();
+    let xml = network.to_xmlbif().unwrap();
+    assert_eq!(Network::from_xmlbif(&xml).unwrap(), network);
+    assert_eq!(
+        Network::from_bif(&network.to_bif().unwrap()).unwrap(),
+        network
+    );
+    // Rounded ones are divided by their sum.
+    let rounded = xml.replace("0.3 ", "0.3005 ");
+    assert_ne!(rounded, xml);
+    let read = Network::from_xmlbif(&rounded).unwrap();
+    let whole = odd.map(|p| if p == 0.3 { 0.3005 } else { p });
+    let sum: f64 = whole.iter().sum();
+    let divided = whole.map(|p| p / sum);
+    let expected = Network::new(vec![Variable::table("a", &categories, &[], &divided)]).unwrap();
+    assert_eq!(read, expected);
+}
+
+#[test]
 fn broken_xmlbif_is_refused_by_place() {
     let whole = Network::from_bif(&std::fs::read_to_string(ASIA).unwrap()).unwrap();
     let xml = whole.to_xmlbif().unwrap();

@@ -97,7 +97,45 @@ mod tests {
         assert_eq!(short.len(), 2);
     }
 
+    /// Cost, items, symbols before the last item, its period and its count, by trying every last item of every prefix.
+    fn cheapest(symbols: &[Symbol]) -> Vec<(f64, usize, usize, usize, usize)> {
+        let mut best = vec![(0.0, 0, 0, 0, 1)];
+        for end in 1..=symbols.len() {
+            let before = best[end - 1];
+            let mut ways = vec![(before.0 + 1.0, before.1 + 1, end - 1, 0, 1)];
+            for period in 1..=end / 2 {
+                let last = &symbols[end - period..end];
+                for count in 2..=end / period {
+                    let start = end - count * period;
+                    if symbols[start..end].chunks(period).all(|c| c == last) {
+                        let cost = best[start].0 + REPEAT + PERIOD * period as f64;
+                        ways.push((cost, best[start].1 + 1, start, period, count));
+                    }
+                }
+            }
+            let least = ways.iter().map(|w| w.0).fold(f64::INFINITY, f64::min);
+            ways.retain(|w| w.0 < least + 1e-9);
+            best.push(*ways.iter().min_by_key(|w| (w.1, w.2, w.3)).unwrap());
+        }
+        best
+    }
+
     proptest! {
+        #[test]
+        fn of_equal_writings_the_one_with_the_fewest_items_is_taken(text in "[abc]{1,14}") {
+            let symbols = string(&text);
+            let (items, _) = collapse(&symbols);
+            let best = cheapest(&symbols);
+            let (mut periods, mut end) = (Vec::new(), symbols.len());
+            while end > 0 {
+                periods.push(best[end].3.max(1));
+                end = best[end].2;
+            }
+            periods.reverse();
+            let found: Vec<usize> = items.iter().map(|i| i.symbols().len()).collect();
+            prop_assert_eq!(found, periods, "{}", text);
+        }
+
         #[test]
         fn items_write_the_string(text in "[ab]{1,30}") {
             let symbols = string(&text);

@@ -189,3 +189,35 @@ impl Sets {
         self.0[a.max(b)] = a.min(b);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_of_a_plan_a_centimetre_outside_of_it_whatever_its_size() {
+        for side in [0.5, 1.0, 20.0, 300.0] {
+            let hull = vec![[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+            let plan = PlanHull {
+                hull,
+                middle: [side / 2.0; 2],
+                low: [0.0; 2],
+                high: [side; 2],
+            };
+            assert_eq!(plan.area(), side * side);
+            for turn in 0..4 {
+                let at = |beyond: f64| {
+                    let (along, across) = (0.4 * side, -beyond);
+                    [
+                        [along, across],
+                        [side - across, along],
+                        [along, side - across],
+                        [across, along],
+                    ][turn]
+                };
+                assert!(plan.has(at(-0.1)) && plan.has(at(0.9 * NEAR)), "{side}");
+                assert!(!plan.has(at(1.1 * NEAR)), "{side}");
+            }
+        }
+    }
+}

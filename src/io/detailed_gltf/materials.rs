@@ -219,3 +219,20 @@ fn scaled(texture: Texture) -> Map<String, Value> {
     let scale = json!({ "scale": [repeats, repeats] });
     [(TRANSFORM.to_owned(), scale)].into_iter().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_texture_repeats_once_over_its_size() {
+        for texture in Texture::ALL {
+            let stated = scaled(texture);
+            let [x, y] = [0, 1].map(|k| stated[TRANSFORM]["scale"][k].as_f64().unwrap());
+            assert!(
+                (x * texture.size() - 1.0).abs() < 1e-12 && x == y,
+                "{stated:?}"
+            );
+        }
+    }
+}

@@ -110,3 +110,40 @@ pub(super) fn constants<'g>(
     });
     named.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_grammar::Rule;
+
+    #[test]
+    fn a_size_that_is_written_twice_has_a_name() {
+        let part = |symbol: &str, size| Successor::new(symbol, size);
+        let rule = |symbol: &str, axis, successors| Rule {
+            symbol: symbol.to_owned(),
+            weight: None,
+            operation: Operation::Split { axis, successors },
+        };
+        let grammar = Grammar {
+            rules: vec![
+                rule(
+                    "A",
+                    Axis::X,
+                    vec![part("w", 2.0), part("v", 3.0), part("w", 2.0)],
+                ),
+                rule("B", Axis::X, vec![part("v", 3.5), part("w", 2.0)]),
+                // The same along the other axis, once.
+                rule("C", Axis::Y, vec![part("v", 3.0), part("w", 2.0)]),
+            ],
+            unit: "metre".to_owned(),
+            starts: Vec::new(),
+        };
+        let names = FxHashMap::from_iter([("w", "window".to_owned()), ("v", "wall".to_owned())]);
+        let found = constants(&grammar, &names, &mut FxHashSet::default());
+        let found: Vec<_> = found
+            .iter()
+            .map(|(key, name, value)| (key.0, key.1, name.as_str(), *value))
+            .collect();
+        assert_eq!(found, [("w", Axis::X, "window_width", 2.0)]);
+    }
+}

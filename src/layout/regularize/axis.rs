@@ -175,3 +175,22 @@ pub(super) fn round_together(values: &[f64]) -> Vec<f64> {
         .map(|v| (v + 1.0 - threshold).floor())
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_where_no_fraction_is_near() {
+        // The widest gap of the fractions is from .34 to .75, though that from .25 to .30 begins lower.
+        assert_eq!(round_together(&[2.30, 7.32, 1.34]), [2.0, 7.0, 1.0]);
+        // From .25 to .62: all of these are above.
+        assert_eq!(round_together(&[2.62, 7.66, 1.70]), [3.0, 8.0, 2.0]);
+        // From .30 to .68, between them.
+        assert_eq!(round_together(&[0.30, 5.68]), [0.0, 6.0]);
+        assert_eq!(
+            round_together(&[4.0, 4.9, -0.1, -1.0]),
+            [4.0, 5.0, 0.0, -1.0]
+        );
+    }
+}

@@ -201,6 +201,20 @@ mod tests {
             assert!(xs.iter().all(|x| (0.0..=view[0]).contains(x)), "{xs:?}");
             let rights = numbers(&svg, "x").len();
             assert!(rights > 0);
+            // As far from the left side as from the right, but for the least width.
+            let rects = svg.split("<rect x=\"").skip(1).map(|rect| {
+                let x: f64 = rect.split('"').next().unwrap().parse().unwrap();
+                (x, x + numbers(rect, "width")[0])
+            });
+            let ends = rects.fold((f64::INFINITY, 0.0_f64), |e, r| {
+                (e.0.min(r.0), e.1.max(r.1))
+            });
+            if real.len() > 1 {
+                assert!(
+                    (ends.0 - (view[0] - ends.1)).abs() < 1.0,
+                    "{ends:?} of {view:?}"
+                );
+            }
             for rect in svg.split("<rect x=\"").skip(1) {
                 let x: f64 = rect.split('"').next().unwrap().parse().unwrap();
                 let right = x + numbers(rect, "width")[0];

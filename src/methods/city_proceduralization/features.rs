@@ -180,3 +180,24 @@ pub fn geometric_features(components: &[Component]) -> Points {
         dimension: axes.len(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_nearer_to_their_chain_than_the_tolerance_are_left_out() {
+        // A bow of heights 0, 1, 1.2, 0.6, 0 over 0 to 8, moved and turned: the third point is 1.2 from the chord, then the second
+        // 0.4 from the chord of the first and third, and the fourth as near to that of the third and fifth.
+        let bow = [[0.0, 0.0], [2.0, 1.0], [4.0, 1.2], [6.0, 0.6], [8.0, 0.0]];
+        for (x, y, turn) in [(0.0, 0.0, 0.0_f64), (5.0, -3.0, 0.7), (-400.0, 900.0, 2.5)] {
+            let (sin, cos) = turn.sin_cos();
+            let moved = bow.map(|[u, v]| [x + u * cos - v * sin, y + u * sin + v * cos]);
+            let kept = |tolerance| inner_vertices(&moved, tolerance);
+            assert_eq!(kept(1.3), 0);
+            assert_eq!(kept(0.5), 1);
+            assert_eq!(kept(0.1), 2);
+        }
+        assert_eq!(inner_vertices(&bow[..2], 0.0), 0);
+    }
+}

@@ -346,6 +346,22 @@ mod tests {
     }
 
     #[test]
+    fn a_pyramid_fills_a_third_of_its_box() {
+        let corners = [[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0]];
+        let mut positions = corners.map(|[x, y]| [x, y, 2.0]).to_vec();
+        positions.push([3.0, 2.0, 11.0]);
+        let mut triangles: Vec<[u32; 3]> = (0..4).map(|i| [i, (i + 1) % 4, 4]).collect();
+        triangles.extend([[0, 2, 1], [0, 3, 2]]);
+        let mesh = TriangleMesh {
+            positions,
+            triangles,
+        };
+        let seen = landmark(&mesh).unwrap().seen;
+        assert!((seen.solid.unwrap() - 1.0 / 3.0).abs() < 1e-9, "{seen:?}");
+        assert!((seen.width - 6.0).abs() < 1e-9 && (seen.height - 9.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn the_nearest_are_the_nearest() {
         let landmarks: Vec<Landmark> = (0..60)
             .map(|i| Landmark {

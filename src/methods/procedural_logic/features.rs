@@ -146,3 +146,49 @@ fn unite(set: &mut AssetSet, other: &AssetSet) {
         *word |= more;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_shape::LabelGrid;
+    use std::collections::BTreeSet;
+
+    fn profile(rules: &[u32]) -> Profile {
+        Profile {
+            powerset: Histogram::count(std::iter::empty()),
+            rules: Histogram::count(rules.iter().copied()),
+            lattice: Lattice::read(&LabelGrid {
+                name: "wall".to_owned(),
+                unit: "pixel".to_owned(),
+                xs: vec![0.0, 10.0],
+                ys: vec![0.0, 10.0],
+                labels: vec!["wall".to_owned()],
+                cells: vec![0],
+            }),
+        }
+    }
+
+    #[test]
+    fn the_union_of_rules_is_counted_against_the_rules_of_each() {
+        let distance = |a: &[u32], b: &[u32]| Measure::RuleUnion.distance(&profile(a), &profile(b));
+        // Four rules in all of two and three; the same; none in common; how often a rule is used does not count.
+        assert_eq!(distance(&[1, 2], &[2, 3, 4]), 4.0 / 5.0);
+        assert_eq!(distance(&[1, 2, 3], &[3, 2, 1]), 0.5);
+        assert_eq!(distance(&[1, 2], &[3]), 1.0);
+        assert_eq!(distance(&[1, 1, 1, 2], &[2, 3, 4]), 4.0 / 5.0);
+    }
+
+    #[test]
+    fn rules_in_common_are_compared_alone() {
+        let (a, b) = (profile(&[1, 1, 2]), profile(&[1, 2, 2, 7, 7, 7]));
+        let shared = chi_square(&Histogram::count([1, 1, 2]), &Histogram::count([1, 2, 2]));
+        assert_eq!(Measure::CommonRules.distance(&a, &b), shared);
+        assert!(Measure::AllRules.distance(&a, &b) > shared);
+        for measure in Measure::ALL {
+            assert_eq!(measure.distance(&a, &b), measure.distance(&b, &a));
+        }
+        let names: BTreeSet<&str> = Measure::ALL.iter().map(|m| m.name()).collect();
+        assert_eq!(names.len(), Measure::ALL.len());
+        assert!(names.iter().all(|name| name.len() > 5), "{names:?}");
+    }
+}

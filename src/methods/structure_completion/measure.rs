@@ -129,6 +129,8 @@ mod tests {
 
     #[test]
     fn agreement_by_hand() {
+        // What does not overlap is no pair, whatever is asked.
+        assert_eq!(agreement(&[window(0.0)], &[window(500.0)], 0.0).matched, 0);
         let truth = [window(0.0), window(10.0), window(20.0)];
         let predicted = [window(0.1), window(10.9), window(30.0)];
         let half = agreement(&predicted, &truth, 0.5);

@@ -258,3 +258,31 @@ fn stepped(share: f64) -> u8 {
     };
     ((curve * 255.0 / STEP).round() * STEP).clamp(0.0, 255.0) as u8
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_material_reflects_more_than_it_gets_and_none_jumps() {
+        for texture in Texture::ALL {
+            let side = 97;
+            for i in 0..side * side {
+                let place = [i % side, i / side].map(|k| k as f64 / side as f64);
+                let Sample {
+                    share,
+                    joint,
+                    height,
+                } = texture.sample(place);
+                let name = texture.name();
+                // Hues of bricks pass the mean by a twentieth.
+                assert!(
+                    share.iter().all(|s| (0.0..=1.06).contains(s)),
+                    "{name}: {share:?}"
+                );
+                assert!((0.0..=1.0).contains(&joint), "{name}: {joint}");
+                assert!(height.abs() < 0.1, "{name}: {height}");
+            }
+        }
+    }
+}

@@ -167,3 +167,33 @@ impl Seen {
         dot(self.normal, other.normal) > 0.999 && apart < PLANE * self.distance
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_of_one_plane_are_beside_each_other_by_their_distance() {
+        let at = |x: f32, z: f32, distance: f32| Seen {
+            point: [x, 0.0, z],
+            normal: [0.0, 0.0, 1.0],
+            colour: [0.5; 3],
+            distance,
+            ray: [0.0, 0.0, -1.0],
+            ground: false,
+            lit: true,
+            open: 1.0,
+        };
+        for distance in [2.0, 50.0, 800.0] {
+            let own = at(0.0, 0.0, distance);
+            let near = PLANE * distance;
+            assert!(own.is_beside(&at(3.0, 0.9 * near, distance)), "{distance}");
+            assert!(!own.is_beside(&at(3.0, 1.1 * near, distance)), "{distance}");
+            let mut turned = at(3.0, 0.0, distance);
+            turned.normal = [1.0, 0.0, 0.0];
+            assert!(!own.is_beside(&turned));
+            let sky = at(0.0, 0.0, f32::INFINITY);
+            assert!(!own.is_beside(&sky) && sky.is_beside(&sky));
+        }
+    }
+}

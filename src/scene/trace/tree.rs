@@ -248,3 +248,18 @@ fn crossing(corners: &[V; 3], from: V, ray: V) -> Option<f32> {
     let distance = dot(f, q) / determinant;
     (distance > 1e-4).then_some(distance)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_area_of_a_box_is_half_its_surface() {
+        let bounds = Bounds {
+            low: [1.0, -2.0, 0.5],
+            high: [3.0, 1.0, 5.5],
+        };
+        assert_eq!(bounds.area(), 2.0 * 3.0 + 3.0 * 5.0 + 5.0 * 2.0);
+        assert_eq!(Bounds::EMPTY.area(), 0.0);
+    }
+}

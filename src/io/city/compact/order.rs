@@ -121,3 +121,23 @@ fn hilbert(x: u64, y: u64) -> u64 {
     }
     far
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_goes_through_all_cells_of_a_square_by_single_steps() {
+        for (x0, y0) in [(0, 0), (64, 128), ((1 << LEVELS) - 32, 32)] {
+            let cells = (0..32).flat_map(|x| (0..32).map(move |y| (x0 + x, y0 + y)));
+            let mut along: Vec<(u64, (u64, u64))> =
+                cells.map(|(x, y)| (hilbert(x, y), (x, y))).collect();
+            along.sort_unstable();
+            for pair in along.windows(2) {
+                let ((far, a), (next, b)) = (pair[0], pair[1]);
+                assert_eq!(next, far + 1);
+                assert_eq!(a.0.abs_diff(b.0) + a.1.abs_diff(b.1), 1, "{a:?} {b:?}");
+            }
+        }
+    }
+}

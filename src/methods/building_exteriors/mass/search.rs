@@ -322,3 +322,28 @@ pub fn nearest(
         .map(|(_, index, mirrored)| (index, mirrored))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plain_house_that_is_near_is_enough_and_around_boxes_any_that_is_near() {
+        let found = |cost, complexity| Found {
+            cost,
+            complexity,
+            ..Found::new(0.01)
+        };
+        assert!(found(0.01, SIMPLE).is_enough(&[]));
+        assert!(!found(0.01, SIMPLE + 1.0).is_enough(&[]));
+        assert!(!found(0.02, SIMPLE).is_enough(&[]));
+        let frozen = [Block {
+            edges: [[0.0, 4.0], [0.0, 3.0]],
+            floors: 1,
+            roof: PLAIN,
+            frozen: true,
+        }];
+        assert!(found(0.01, SIMPLE + 1.0).is_enough(&frozen));
+        assert!(!found(0.02, 0.0).is_enough(&frozen));
+    }
+}

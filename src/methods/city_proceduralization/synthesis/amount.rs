@@ -66,3 +66,33 @@ impl Amount {
             + sums.map(|(&new, old)| a_building(new, old)).sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn amount(blocks: f64, buildings: f64, area: f64) -> Amount {
+        Amount {
+            blocks,
+            buildings,
+            area,
+            sums: [1.0, 2.0 * buildings, 3.0 * buildings, 4.0 * buildings],
+        }
+    }
+
+    #[test]
+    fn amounts_add_up_and_are_unlike_by_their_ratios() {
+        let (one, other) = (amount(2.0, 5.0, 400.0), amount(1.0, 4.0, 300.0));
+        let both = one.plus(&other);
+        assert_eq!((both.blocks, both.buildings, both.area), (3.0, 9.0, 700.0));
+        assert_eq!(both.sums, [2.0, 18.0, 27.0, 36.0]);
+        let twice = one.times(2.0);
+        assert_eq!((twice.blocks, twice.buildings), (4.0, 10.0));
+        assert_eq!(one.unlike(&one), 0.0);
+        // Twice the area alone, up to the one that is added to either.
+        let dense = Amount { area: 800.0, ..one };
+        let expected = (801.0_f64 / 401.0).ln();
+        assert!((dense.unlike(&one) - expected).abs() < 1e-12);
+        assert!((one.unlike(&dense) - expected).abs() < 1e-12);
+    }
+}

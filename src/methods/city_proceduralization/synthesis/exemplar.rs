@@ -153,3 +153,26 @@ fn middles(town: &FxHashSet<[i64; 2]>, side: f64) -> Vec<[f64; 2]> {
     let middle = |c: &[i64; 2]| c.map(|v| (v as f64 + 0.5) * TOWN_CELL);
     kept.map(|(c, _)| middle(c)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_fill_the_cells_about_their_middles() {
+        let city = Exemplar {
+            buildings: Vec::new(),
+            groups: Vec::new(),
+            built: Raster::new(COMPARED),
+            middles: vec![[100.0, -50.0], [300.0, 20.0]],
+            side: 60.0,
+            axis: 0.0,
+            near: FxHashMap::default(),
+        };
+        let half = 0.5 * TOWN_CELL;
+        assert_eq!(city.place([0.2, 0.5, 0.5]), [100.0, -50.0]);
+        assert_eq!(city.place([0.2, 0.0, 0.0]), [100.0 - half, -50.0 - half]);
+        assert_eq!(city.place([0.7, 1.0, 0.0]), [300.0 + half, 20.0 - half]);
+        assert_eq!(city.place([1.0, 0.0, 1.0]), [300.0 - half, 20.0 + half]);
+    }
+}

@@ -137,3 +137,44 @@ pub(super) fn open_ground(prints: &[&Footprint], frames: &[([f64; 3], f64)]) -> 
     }
     open
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn open_ground_lies_around_its_building_wherever_that_stands() {
+        // A square of 8 m about its frame, alone and with its twin to the east.
+        let half: Vec<f64> = (-4..4).map(|v| f64::from(v) + 0.5).collect();
+        let covered = half.iter().flat_map(|x| half.iter().map(|y| [*x, *y]));
+        let print = Footprint {
+            inner: covered.collect(),
+            ..Footprint::default()
+        };
+        for (at, turn) in [
+            ([0.0, 0.0, 0.0], 0.0),
+            ([5000.0, -3000.0, 7.0], 0.0),
+            ([-700.0, 40.0, 0.0], 90.0),
+        ] {
+            let east = rotated([14.0, 0.0], turn);
+            let twin = ([at[0] + east[0], at[1] + east[1], at[2]], turn);
+            let alone = &open_ground(&[&print], &[(at, turn)])[0];
+            let reach = OPEN_STEPS as f64 * OPEN_CELL;
+            // Cells at most so many steps from the square, counted along the axes, in all directions alike.
+            let from = |[x, y]: [f64; 2]| (x.abs() - 4.0).max(0.0) + (y.abs() - 4.0).max(0.0);
+            assert!(alone.iter().all(|p| from(*p) > 0.0 && from(*p) < reach));
+            for k in 0..2 {
+                let sum: f64 = alone.iter().map(|p| p[k]).sum();
+                assert!((sum / alone.len() as f64).abs() < 1e-6, "{at:?}");
+            }
+            let beside = &open_ground(&[&print, &print], &[(at, turn), twin])[0];
+            assert!(beside.len() < alone.len());
+            assert!(beside.iter().all(|p| {
+                alone
+                    .iter()
+                    .any(|q| (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-6)
+            }));
+            assert!(beside.iter().all(|p| p[0] < 8.0), "nearer to the twin");
+        }
+    }
+}

@@ -206,3 +206,110 @@ impl RulePricer {
         lines
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_base::rng::stream;
+    use edifice_shape::{Facade, Rect, Region};
+    use rand::RngExt;
+
+    /// A row of unit cells.
+    fn row(labels: &[u8]) -> Facade {
+        let cells = labels.iter().enumerate().map(|(x, label)| Region {
+            label: label.to_string(),
+            rect: Rect::new(x as f64, 0.0, 1.0, 1.0),
+        });
+        Facade::new("row", "cell", labels.len() as f64, 1.0, cells.collect()).unwrap()
+    }
+
+    /// The least cost of a rule for a row of strips, by trying every set of cuts: as a split, and as what its successors allow.
+    fn least(
+        strips: &Strips,
+        costs: &Costs,
+        operations: Operations,
+        price: &impl Fn(TypeId) -> f64,
+    ) -> f64 {
+        let n = strips.intervals();
+        let mut best = f64::INFINITY;
+        for cuts in 1..1_u32 << (n - 1) {
+            let mut lines = vec![0];
+            lines.extend((1..n).filter(|i| cuts >> (i - 1) & 1 == 1));
+            lines.push(n);
+            let all: Vec<TypeId> = lines.windows(2).map(|w| strips.strip(w[0], w[1])).collect();
+            let written = |operation: f64, types: &[TypeId]| {
+                let prices: f64 = types.iter().map(|t| price(*t)).sum();
+                operation + costs.successor * types.len() as f64 + prices
+            };
+            best = best.min(written(costs.split, &all));
+            let m = all.len();
+            for period in (1..m).filter(|p| operations.repeat && m.is_multiple_of(*p)) {
+                if all.chunks(period).all(|c| c == &all[..period]) {
+                    best = best.min(written(costs.repeat, &all[..period]));
+                }
+            }
+            if m % 2 == 1 && (2..m).all(|i| all[i] == all[i - 2]) {
+                best = best.min(written(costs.repeat_aba, &all[..2]));
+            }
+            if operations.sym_split && (0..m).all(|i| all[i] == all[m - 1 - i]) {
+                best = best.min(written(costs.sym_split, &all[..m.div_ceil(2)]));
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn no_rule_of_a_row_is_cheaper() {
+        let costs = Costs::default();
+        let mut kinds = [0; 4];
+        for case in 0..600 {
+            // The other operations are cheaper than an alternation wherever there is a choice.
+            let operations = Operations {
+                repeat: case % 4 != 1,
+                repeat_aba: true,
+                sym_split: case % 4 != 1,
+                grid_split: false,
+            };
+            let mut pricer = RulePricer::new(costs, operations);
+            let mut rng = stream(1, "rows", case);
+            let mut length = rng.random_range(2..10);
+            let mut labels: Vec<u8> = (0..length).map(|_| rng.random_range(0..3)).collect();
+            // A quarter mirrored, two with a period of one to three cells, which every second time ends in its first cell again.
+            let period = rng.random_range(1..4);
+            if case % 4 == 1 && length > period {
+                length = (length - 1) / period * period + 1;
+                labels.truncate(length);
+            }
+            for i in 0..length {
+                match case % 4 {
+                    0 => labels[length - 1 - i] = labels[i],
+                    1 | 2 if i >= period => labels[i] = labels[i - period],
+                    _ => {}
+                }
+            }
+            let mut types = Types::new(&[row(&labels)]).unwrap();
+            let root = types.roots[0];
+            let strips = types.strips(root, Axis::X);
+            // Also prices below zero, as a search for reduced costs has them.
+            let prices: Vec<f64> = (0..200).map(|_| rng.random_range(-0.5..3.0)).collect();
+            let price = |t: TypeId| prices[t as usize % prices.len()];
+            let (cost, rule) = pricer
+                .along(&strips, Axis::X, f64::INFINITY, &price)
+                .unwrap();
+            let expected = least(&strips, &costs, operations, &price);
+            assert!(
+                (cost - expected).abs() < 1e-8,
+                "{labels:?}: {cost} {expected}"
+            );
+            let paid: f64 = rule.successors.iter().map(|t| price(*t)).sum();
+            assert!((rule.cost(&costs) + paid - cost).abs() < 1e-8, "{rule:?}");
+            kinds[match rule.arrangement {
+                Arrangement::Split(_) => 0,
+                Arrangement::Repeat(_) => 1,
+                Arrangement::RepeatAba(_) => 2,
+                _ => 3,
+            }] += 1;
+        }
+        assert!(kinds.iter().all(|k| *k > 15), "{kinds:?}");
+    }
+}

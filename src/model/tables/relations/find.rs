@@ -317,3 +317,25 @@ fn simple(value: f64) -> f64 {
         .find(|c| near(*c))
         .unwrap_or(value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_of_large_numbers_has_no_constant() {
+        // Whole numbers far from zero: their means are rounded by more than a share of their deviation.
+        let noise = |i: u32, k: u32| f64::from((i * 7919 + k * 104_729) % 1009 % 4);
+        let column =
+            |f: fn(f64, f64) -> f64| (0..61).map(move |i| Some(f(noise(i, 1), noise(i * i, 2))));
+        let table = Table::new()
+            .real("from", column(|a, _| 33_554_432.0 + a))
+            .unwrap()
+            .real("to", column(|_, b| 33_554_432.0 + b))
+            .unwrap()
+            .real("years", column(|a, b| b - a))
+            .unwrap();
+        let said: Vec<String> = find(&table).iter().map(Relation::said).collect();
+        assert_eq!(said, ["to = from + years"]);
+    }
+}

@@ -73,4 +73,13 @@ fn units_and_shifts_of_the_cost_do_not_matter_to_cmaes() {
     let other = cmaes::minimize(|x| 8.0 * bowl(x), &[4.0, -2.0], &settings, 3, |_| {}).unwrap();
     assert_eq!(plain.best, other.best);
     assert_eq!(plain.outcome, Outcome::MaxEvaluations);
+    // Nor do units matter to when it has converged.
+    let settings = cmaes::Settings::default();
+    let plain = cmaes::minimize(bowl, &[4.0, -2.0], &settings, 3, |_| {}).unwrap();
+    for unit in [2.0_f64.powi(20), 2.0_f64.powi(-20)] {
+        let scaled = |x: &[f64]| unit * bowl(x);
+        let other = cmaes::minimize(scaled, &[4.0, -2.0], &settings, 3, |_| {}).unwrap();
+        assert_eq!(other.trace.len(), plain.trace.len(), "{unit}");
+        assert_eq!(other.outcome, plain.outcome, "{unit}");
+    }
 }

@@ -120,6 +120,48 @@ const LKH: [f64; 10] = [
     10.611215082075123,
 ];
 
+/// A walk over the integers, all of the same cost but for steps of a millionth of a millionth.
+#[derive(Clone)]
+struct Plain {
+    at: i64,
+    before: i64,
+}
+
+impl Landscape for Plain {
+    type Solution = i64;
+
+    fn cost(&self) -> f64 {
+        1.0 - 1e-12 * self.at.rem_euclid(7) as f64
+    }
+
+    fn propose<R: Rng>(&mut self, rng: &mut R) -> Option<f64> {
+        self.before = self.at;
+        self.at += rng.random_range(1..=3);
+        Some(self.cost())
+    }
+
+    fn accept(&mut self) {}
+
+    fn reject(&mut self) {
+        self.at = self.before;
+    }
+
+    fn solution(&self) -> i64 {
+        self.at
+    }
+}
+
+#[test]
+fn rounding_noise_is_no_progress_of_tempering() {
+    let settings = Settings {
+        rounds: 20,
+        temperatures: Some((1.0, 2.0)),
+        ..Settings::default()
+    };
+    let run = temper(&Plain { at: 0, before: 0 }, &settings, 1, |_| {}).unwrap();
+    assert_eq!((run.best, run.cost), (0, 1.0));
+}
+
 #[test]
 fn tempering_finds_tours_near_those_of_lkh() {
     let (mut tempered, mut annealed) = (0.0, 0.0);

@@ -145,3 +145,27 @@ pub(super) fn filled(mut has: Vec<bool>) -> Vec<bool> {
     }
     has
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_found_by_their_upper_sides() {
+        let tops = [5.0, 1.0, 9.0, 5.5, 3.0, 5.0, 12.0];
+        let boxes = tops.map(|top| Box4 {
+            x: [0.0, 1.0],
+            y: [0.0, top],
+        });
+        let index = Tops::new(&boxes);
+        for at in [-5.0, 1.0, 4.0, 5.0, 5.2, 9.0, 40.0] {
+            for reach in [0.0, 0.5, 2.0, 100.0] {
+                let mut found: Vec<usize> = index.near(at, reach).collect();
+                found.sort_unstable();
+                let near = |i: &usize| (tops[*i] - at).abs() <= reach;
+                let slow: Vec<usize> = (0..tops.len()).filter(near).collect();
+                assert_eq!(found, slow, "{at} {reach}");
+            }
+        }
+    }
+}

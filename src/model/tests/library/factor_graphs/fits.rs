@@ -1,7 +1,9 @@
 //! Fits by chains beside exact ones, with hidden variables and with inputs.
 
+use std::ops::ControlFlow;
+
 use edifice_base::rng::stream;
-use edifice_base::unwatched;
+use edifice_base::{Progress, unwatched};
 use edifice_model::factor_graph::{
     Factor, Gibbs, Outcome, Settings, exact_gradient, fit, fit_exact, gradient, sample,
 };
@@ -220,4 +222,27 @@ fn tempered_chains_fit_machines_of_separate_modes() {
     let (plain, tempered) = (short(1), short(4));
     println!("{plain:.6} nats below with one temperature, {tempered:.6} with four");
     assert!(tempered < 1e-3, "{tempered}");
+}
+
+#[test]
+fn a_stopped_fit_has_its_last_weights_or_their_mean() {
+    let graph = machine(4);
+    let mut rng = stream(9, "stopped", 0);
+    let data = data(4, &random(10, 1.0, &mut rng), 500, &mut rng);
+    let settings = Settings::default();
+    let whole = fit(&graph, &data, &settings, 1, &unwatched).unwrap();
+    let length = dot(&whole.weights, &whole.weights).sqrt();
+    // Before the second half, whose mean is the answer, and in it.
+    for (rounds, near) in [(50, 0.5), (300, 0.2)] {
+        let enough = |p: Progress| match p.done < rounds {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        };
+        let stopped = fit(&graph, &data, &settings, 1, &enough).unwrap();
+        assert_eq!(stopped.outcome, Outcome::Interrupted);
+        let off: Vec<f64> = (stopped.weights.iter().zip(&whole.weights))
+            .map(|(a, b)| a - b)
+            .collect();
+        assert!(dot(&off, &off).sqrt() < near * length, "{rounds}: {off:?}");
+    }
 }

@@ -3,7 +3,8 @@
 use edifice_model::program::diagnostics::{
     ess_bulk, ess_mean, ess_tail, mcse_mean, mcse_sd, r_hat,
 };
-use edifice_model::program::pareto_k;
+use edifice_model::program::dist::normal;
+use edifice_model::program::{Chains, Handler, Program, Real, metropolis, pareto_k};
 
 /// Autoregressive chains from a linear congruential generator, the same numbers in any language.
 fn chains(count: usize, draws: usize, rho: f64, drift: f64) -> Vec<Vec<f64>> {
@@ -136,4 +137,37 @@ fn paretos_k_equals_that_of_arviz() {
             "{scale}: {k} is not {expected}"
         );
     }
+}
+
+/// A number near to an observation.
+struct Near;
+
+impl Program for Near {
+    type Out = f64;
+
+    fn run<H: Handler>(&self, h: &mut H) -> f64 {
+        let x = h.sample("x", normal(0.0, 1.0));
+        h.observe(normal(x, 0.3), &0.5.into());
+        x.value()
+    }
+}
+
+#[test]
+fn errors_of_chains_are_those_of_the_chains_apart() {
+    let settings = Chains {
+        chains: 3,
+        draws: 200,
+        warmup: 0,
+        seed: 4,
+    };
+    let posterior = metropolis(&Near, &settings).unwrap();
+    let all: Vec<f64> = posterior.draws.iter().map(|d| d.out).collect();
+    let chains: Vec<Vec<f64>> = all.chunks(200).map(<[f64]>::to_vec).collect();
+    assert_eq!(chains.len(), 3);
+    let error = posterior.estimate(|d| d.out).error;
+    assert_eq!(error, mcse_mean(&chains));
+    // As one chain they would seem to say something else.
+    assert!((error / mcse_mean(&[all]) - 1.0).abs() > 1e-3);
+    let summary = &posterior.summary()[0];
+    assert_eq!((summary.mcse, summary.r_hat), (error, r_hat(&chains)));
 }
