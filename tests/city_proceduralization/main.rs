@@ -1,6 +1,8 @@
 //! Cities: grammars, files and commands.
 
 mod box_textures;
+#[path = "../common/cases.rs"]
+mod cases;
 mod cga;
 #[path = "../common/cga_judge.rs"]
 mod cga_judge;

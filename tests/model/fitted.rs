@@ -6,6 +6,8 @@ use edifice::model::network::{FitSettings, Network};
 use edifice::rng::stream;
 use rand::RngExt;
 
+use crate::cases::cases;
+
 /// A hidden cause, two of its effects, one of which depends on the other as well. The numbers only draw the data.
 const NETWORK: &str = "network n {\n}
 variable cause { type discrete [ 2 ] { low, high }; }
@@ -153,13 +155,14 @@ fn the_command_is_the_librarys_em() {
     let open = Network::from_bif(NETWORK).unwrap();
     let settings = FitSettings::default();
     let alpha = settings.priors.dirichlet;
-    for (seed, shown, holes) in [
+    let all = [
         (1, [true; 3], 0.0),
+        (4, [false, true, true], 0.2),
         (2, [true; 3], 0.3),
         (3, [false, true, true], 0.0),
-        (4, [false, true, true], 0.2),
         (5, [true, false, true], 0.1),
-    ] {
+    ];
+    for (seed, shown, holes) in all.into_iter().take(cases(all.len())) {
         let rows = drawn(160, shown, holes, seed);
         let (csv, table) = written(&rows, shown);
         let own = open

@@ -1,5 +1,7 @@
 //! Models and tables from files to files: every command of `edifice model`, and linfa beside our mixtures.
 
+#[path = "../common/cases.rs"]
+mod cases;
 mod commands;
 mod files;
 mod fitted;

@@ -1,6 +1,8 @@
 //! Structure completion: search, score, chain, weights and commands.
 
 mod bad_input;
+#[path = "../common/cases.rs"]
+mod cases;
 mod chain;
 mod coherence;
 mod commands;

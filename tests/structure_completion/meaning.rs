@@ -9,6 +9,8 @@ use edifice::methods::structure_completion::score::{ScoreModel, Term, Training};
 use edifice::rng::stream;
 use edifice::shape::Rect;
 
+use crate::cases::cases;
+
 fn score(model: &ScoreModel, layout: &Layout, elements: &[Element]) -> f64 {
     let facade = [layout.width, layout.height];
     model.score(&model.evaluate(facade, elements).features)
@@ -59,8 +61,10 @@ fn the_method_of_the_paper_completes_made_grids() {
         let added: Vec<Element> = done[0].added.iter().map(|c| c.element).collect();
         agreement(&added, &hidden, 0.9).f1 == 1.0
     };
-    let whole = (0..made.len()).filter(perfect).count();
-    assert!(whole >= 22, "{whole} of {}", made.len());
+    let tried = cases(made.len());
+    let some = (0..made.len()).step_by(made.len() / tried);
+    let whole = some.filter(perfect).count();
+    assert!(whole >= tried - 2, "{whole} of {tried}");
 }
 
 /// Facades without a door are all symmetric, those with one are not: each is judged by its own kind.

@@ -1,5 +1,7 @@
 //! Sweeps: definition, runs, refusals, reports.
 
+#[path = "../common/cases.rs"]
+mod cases;
 mod commands;
 mod judges;
 mod leaderboard;

@@ -7,6 +7,8 @@ use std::process::Command;
 use edifice_experiments::sweep::examples::examples;
 use edifice_experiments::{ALL, Budget, Options, run};
 
+use crate::cases::cases;
+
 /// Runs artefacts and returns their rows: `[dataset, method, instance, seed, metric]` to value.
 fn artefact(paper: &str, name: &str) -> BTreeMap<[String; 5], f64> {
     let out = tempfile::tempdir().unwrap();
@@ -182,10 +184,11 @@ fn fan_figures_17_and_18() {
         .step_by(6)
         .map(|name| format!("layouts/{name}"))
         .collect();
-    for (artefact_name, name, arms) in [
-        ("figure_17", "structure_completion_figure_17", 2),
+    let both = [
         ("figure_18", "structure_completion_figure_18", 11),
-    ] {
+        ("figure_17", "structure_completion_figure_17", 2),
+    ];
+    for (artefact_name, name, arms) in both.into_iter().take(cases(both.len())) {
         let rows = artefact("structure_completion", artefact_name);
         assert_eq!(rows.len(), arms);
         let completed = |instance: &str| instance.rsplit('/').next().unwrap().to_owned();

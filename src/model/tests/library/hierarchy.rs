@@ -111,8 +111,10 @@ fn real(table: &Table, column: &str, row: usize) -> f64 {
 /// five may lump two styles; at 400 none does.
 #[test]
 fn finds_styles_and_the_lateral_edge() {
-    for (n, least_found) in [(200, 4), (400, 5)] {
-        let found = (1..=5).filter(|&draw| {
+    // Two draws, or five where `EDIFICE_ALL_CASES` is set, as in `.ci/full`; styles may be missed in one of those of 200 rows.
+    let draws = std::env::var_os("EDIFICE_ALL_CASES").map_or(2, |_| 5);
+    for (n, least_found) in [(200, draws - 1), (400, draws)] {
+        let found = (1..=draws).filter(|&draw| {
             let (table, styles) = made(n, 4, draw);
             let model = learn(&table, &groups(), &settings(), 7).unwrap().model;
             assert!(model.styles().abs_diff(4) <= 1);
@@ -124,8 +126,8 @@ fn finds_styles_and_the_lateral_edge() {
             );
             rand_index(&styles_of(&model, &table), &styles) > 0.9
         });
-        let found = found.count();
-        assert!(found >= least_found, "{n} rows: {found} of 5 draws");
+        let found = found.count() as u64;
+        assert!(found >= least_found, "{n} rows: {found} of {draws} draws");
     }
 }
 

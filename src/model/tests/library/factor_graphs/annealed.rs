@@ -31,7 +31,11 @@ fn annealed_partition_functions_are_right_and_their_errors_cover() {
     let question = graph.ask(&[0.4]).unwrap();
     let truth = question.log_partition().unwrap();
     let (mut covered, mut worst) = (0, 0.0_f64);
-    let runs = 100;
+    // A quarter of the runs, or all where `EDIFICE_ALL_CASES` is set, as in `.ci/full`.
+    let (runs, expected) = match std::env::var_os("EDIFICE_ALL_CASES") {
+        Some(_) => (100, 90..=98),
+        None => (25, 21..=25),
+    };
     for seed in 0..runs {
         let settings = Annealing {
             chains: 50,
@@ -46,7 +50,7 @@ fn annealed_partition_functions_are_right_and_their_errors_cover() {
     let found = question.annealed(&Annealing::default()).unwrap();
     println!("defaults: {found:?}");
     assert!((found.log - truth).abs() < 0.1);
-    assert!((90..=98).contains(&covered), "{covered}");
+    assert!(expected.contains(&covered), "{covered}");
 }
 
 #[test]
