@@ -281,15 +281,21 @@ mod tests {
                 assert!(pair[1] - pair[0] >= size, "{count}: {pair:?}");
             }
             if !names[0].vertical {
-                // Names end left of the marks of their leaves, which are left of the tree.
-                let left = out.marks.iter().filter_map(|mark| match mark {
-                    Mark::Fill { points, .. } => Some(points),
-                    _ => None,
-                });
-                let left = left.flatten().map(|p| p.0);
-                let left = left.fold(f64::INFINITY, f64::min);
-                let ends = |t: &&&Text| t.anchor == Anchor::End && t.at.0 <= left;
-                assert_eq!(names.iter().filter(ends).count(), count);
+                // Names end left of the marks of their leaves, which end left of the tree.
+                let ends = |path: bool| {
+                    let points = out.marks.iter().filter_map(|mark| match mark {
+                        Mark::Fill { points, .. } if !path => Some(points),
+                        Mark::Path { points, .. } if path => Some(points),
+                        _ => None,
+                    });
+                    let xs = points.flatten().map(|p| p.0);
+                    let low = xs.clone().fold(f64::INFINITY, f64::min);
+                    (low, xs.fold(f64::NEG_INFINITY, f64::max))
+                };
+                let (marks, tree) = (ends(false), ends(true));
+                let left = |t: &&&Text| t.anchor == Anchor::End && t.at.0 <= marks.0;
+                assert_eq!(names.iter().filter(left).count(), count);
+                assert!(marks.1 <= tree.0, "{marks:?} {tree:?}");
             }
             let inside = |&(x, y): &(f64, f64)| {
                 (0.0..=area.width).contains(&x) && (0.0..=area.height).contains(&y)
