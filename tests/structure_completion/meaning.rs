@@ -64,7 +64,8 @@ fn the_method_of_the_paper_completes_made_grids() {
     let tried = cases(made.len());
     let some = (0..made.len()).step_by(made.len() / tried);
     let whole = some.filter(perfect).count();
-    assert!(whole >= tried - 2, "{whole} of {tried}");
+    // Two of the 24 may fail, none of a quarter of them.
+    assert!(whole >= tried - tried / 12, "{whole} of {tried}");
 }
 
 /// Facades without a door are all symmetric, those with one are not: each is judged by its own kind.
