@@ -1,14 +1,11 @@
 //! Inference of facade grammars against the exact search for the smallest grammar, on random small layouts:
 //! `cargo run --release --example exact_search -- [COUNT] [SEED] [TILES]`.
 
-#[path = "../tests/smallest_grammar/mod.rs"]
-mod smallest_grammar;
-
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
-use smallest_grammar::Limits;
-use smallest_grammar::compare::{Case, Comparison};
+use edifice_smallest_grammar::Limits;
+use edifice_smallest_grammar::compare::{Case, Comparison};
 
 const LIMITS: Limits = Limits {
     types: 1_000,

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -173,27 +174,33 @@ impl<'a> Context<'a> {
         }
         self.batches += 1;
         let journal = Journal::open(&self.journal_path())?;
-        let known: Vec<Option<R>> = units.iter().map(|unit| journal.get(&key(unit))).collect();
-        let finished = known.iter().filter(|r| r.is_some()).count();
+        let mut results: Vec<Option<Result<R>>> = units
+            .iter()
+            .map(|unit| journal.get(&key(unit)).map(Ok))
+            .collect();
+        let missing: Vec<usize> = (0..units.len()).filter(|&u| results[u].is_none()).collect();
+        let finished = units.len() - missing.len();
         let name = format!("{} {}", self.slug, self.artefact);
         let progress = Progress::new(&name, units.len() as u64, finished as u64);
-        let results: Vec<Result<R>> = units
-            .par_iter()
-            .zip(known)
-            .map(|(unit, known)| {
-                if let Some(result) = known {
-                    return Ok(result);
-                }
-                if STOP.load(Ordering::Relaxed) {
-                    return Err(Error::Interrupted);
-                }
-                let result = work(unit)?;
-                journal.put(&key(unit), &result)?;
-                progress.step();
-                Ok(result)
-            })
-            .collect();
-        results.into_iter().collect()
+        let one = |unit: &T| {
+            if STOP.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
+            }
+            let result = work(unit)?;
+            journal.put(&key(unit), &result)?;
+            progress.step();
+            Ok(result)
+        };
+        let (done, received) = mpsc::channel();
+        on_all_threads(missing.len(), &|m| {
+            // The receiver lives until all are done.
+            let _ = done.send((missing[m], one(&units[missing[m]])));
+        });
+        drop(done);
+        for (unit, result) in received {
+            results[unit] = Some(result);
+        }
+        results.into_iter().flatten().collect()
     }
 
     /// The journal's file: other settings, data, seed or build have another.
@@ -334,6 +341,11 @@ impl<'a> Context<'a> {
         progress::line(&format!("{} {}: {reason}", self.slug, self.artefact));
         self.skipped = Some(reason);
     }
+}
+
+/// Calls `work` with every number below `count`, on all threads. Without a type parameter: it is compiled once, not for each kind of unit.
+fn on_all_threads(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
 }
 
 /// Length and age of the running program: a rebuilt one must not reuse what an older one found.

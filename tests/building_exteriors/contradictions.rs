@@ -257,7 +257,7 @@ fn one_and_two_threads_write_the_same_bytes() {
     }
     let vary = |to: &str, threads: &str| {
         std::fs::write(folder.path().join("v.building.json"), &shipped()[2]).unwrap();
-        let args = ["variations", "v.building.json", "-n", "3", "-o", to];
+        let args = ["variations", "v.building.json", "-n", "2", "-o", to];
         assert_eq!(edifice(folder.path(), &args, threads).0, 0);
         contents(&folder.path().join(to))
     };

@@ -56,7 +56,9 @@ fn fault(index: u64) -> Option<String> {
 #[test]
 fn random_houses_are_closed_and_have_the_volume_of_the_integral() {
     let count = std::env::var("EDIFICE_FUZZ_HOUSES").ok();
-    let count = count.map_or(cases(1000), |c| c.parse().expect("a number of houses"));
+    let count = count.map_or(cases(cases(1000)), |c| {
+        c.parse().expect("a number of houses")
+    });
     let faults: Vec<String> = (0..count as u64)
         .into_par_iter()
         .filter_map(fault)

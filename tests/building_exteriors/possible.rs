@@ -68,7 +68,7 @@ fn no_house_is_nearer_than_the_bound() {
         assert_eq!(least_z(&reached, &database.deviations), 0.0, "case {case}");
         bound > 0.25
     };
-    let count = cases(200);
+    let count = cases(cases(200));
     let positive = (0..count).into_par_iter().filter(|k| case(*k)).count();
     assert!(
         10 * positive > count,

@@ -12,6 +12,8 @@ use edifice_generators_building_exteriors::{
     DEPENDENCIES, Family, House, KINDS, SHIPPED, SHIPPED_SEED, STYLES, houses,
 };
 
+use crate::cases::cases;
+
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("datasets/building_exteriors")
 }
@@ -135,7 +137,7 @@ fn plans_are_of_ten_families_and_garages_stand_in_front_beside_and_behind() {
 #[test]
 fn no_window_is_hidden_and_every_house_is_closed() {
     use rayon::prelude::*;
-    let made = houses(SHIPPED_SEED, SHIPPED);
+    let made = houses(SHIPPED_SEED, cases(SHIPPED));
     made.par_iter().for_each(|house| {
         let name = &house.building.name;
         let made = model(&house.building, Joining::Boxes).unwrap();
@@ -192,7 +194,7 @@ const PARENTS: [(&str, &[&str]); 10] = [
 
 #[test]
 fn with_kinds_known_the_nine_dependencies_have_evidence_and_no_other_has() {
-    let made = houses(1, 4000);
+    let made = houses(1, 2000);
     let rows: Vec<Vec<f64>> = made
         .iter()
         .map(|h| {

@@ -1,10 +1,10 @@
 //! Inference of facade grammars against the exact search for the smallest grammar.
 
-use crate::smallest_grammar::compare::{Case, prices};
-use crate::smallest_grammar::{Content, Limits, brute_force, layouts, operation_sets, smallest};
 use edifice::grammar::{Costs, evaluate};
 use edifice::methods::facade_grammar::Operations;
 use edifice::rng::stream;
+use edifice_smallest_grammar::compare::{Case, prices};
+use edifice_smallest_grammar::{Content, Limits, brute_force, layouts, operation_sets, smallest};
 use rand::RngExt;
 
 const LIMITS: Limits = Limits {

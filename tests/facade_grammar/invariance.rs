@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use crate::smallest_grammar::{Content, layouts, operation_sets};
 use edifice::grammar::evaluate;
 use edifice::io::facade_json;
 use edifice::methods::facade_grammar::{Operations, Settings, infer};
 use edifice::rng::{Stream, stream};
 use edifice::shape::{Facade, Rect, Region};
 use edifice::unwatched;
+use edifice_smallest_grammar::{Content, layouts, operation_sets};
 use rand::RngExt;
 
 /// Cost of the grammar that is found, and whether it is proven optimal; infinite when it is no grammar of them.

@@ -2,8 +2,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../smallest_grammar/mod.rs"]
-mod smallest_grammar;
 
 mod board;
 mod bound;

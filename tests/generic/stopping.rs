@@ -28,8 +28,8 @@ use rand::RngExt;
 /// Processor time from a stop to the return, at most.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Runs a method on one thread. Another thread stops it once it has asked its watch so often. The processor time that the method
-/// takes from then on is at most that since it asked last before.
+/// Runs a method on one thread. Another thread stops it once it has asked its watch so often; the watch waits for that, however late the
+/// other thread gets its turn. The processor time that the method takes from then on is at most that since it asked last before.
 fn stopped<T: Send>(after: usize, method: impl FnOnce(&Watch) -> T + Send) -> T {
     let (asked, stop, over) = (
         AtomicUsize::new(0),
@@ -49,8 +49,10 @@ fn stopped<T: Send>(after: usize, method: impl FnOnce(&Watch) -> T + Send) -> T 
         });
         pool.expect("a pool").install(|| {
             let watch = |_: Progress| {
-                asked.fetch_add(1, Ordering::Relaxed);
-                if stop.load(Ordering::Relaxed) {
+                if asked.fetch_add(1, Ordering::Relaxed) + 1 >= after {
+                    while !stop.load(Ordering::Relaxed) {
+                        std::thread::sleep(Duration::from_micros(100));
+                    }
                     return ControlFlow::Break(());
                 }
                 *last.lock().expect("one thread") = clock();

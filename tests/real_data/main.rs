@@ -1,5 +1,7 @@
 //! Properties that hold on real facades and houses; skipped without such data.
 
+#[path = "../common/cases.rs"]
+mod cases;
 #[path = "../common/mod.rs"]
 mod common;
 

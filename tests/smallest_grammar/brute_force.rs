@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use edifice::grammar::Costs;
-use edifice::methods::facade_grammar::Operations;
-use edifice::shape::Axis;
+use edifice_facade_grammar::Operations;
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 use super::content::Content;
 
 /// The least cost of a grammar of `facades`: picks any type that waits for a rule, tries all its rules.
-pub(crate) fn brute_force(facades: &[Content], operations: Operations, costs: &Costs) -> f64 {
+pub fn brute_force(facades: &[Content], operations: Operations, costs: &Costs) -> f64 {
     let roots = facades.iter().filter(|facade| facade.label().is_none());
     cheapest(
         roots.cloned().collect(),

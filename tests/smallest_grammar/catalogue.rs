@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use edifice::shape::Axis;
+use edifice_shape::Axis;
 
 use super::content::Content;
 

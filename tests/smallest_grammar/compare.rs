@@ -3,11 +3,11 @@
 use std::fmt;
 use std::time::Instant;
 
-use edifice::grammar::{Costs, evaluate};
-use edifice::methods::facade_grammar::{BoundLimits, Operations, Settings, infer, lower_bound};
-use edifice::rng::stream;
-use edifice::shape::Facade;
-use edifice::unwatched;
+use edifice_base::rng::stream;
+use edifice_base::unwatched;
+use edifice_facade_grammar::{BoundLimits, Operations, Settings, infer, lower_bound};
+use edifice_grammar::{Costs, evaluate};
+use edifice_shape::Facade;
 use rand::RngExt;
 
 use super::content::Content;
@@ -18,7 +18,7 @@ use super::search::{Limits, smallest};
 const NOISE: f64 = 1e-6;
 
 /// The layouts, operations and costs of a case.
-pub(crate) struct Case {
+pub struct Case {
     /// The layouts.
     pub facades: Vec<Content>,
     /// Allowed operations.
@@ -31,7 +31,7 @@ pub(crate) struct Case {
 
 /// The costs and bounds found.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Comparison {
+pub struct Comparison {
     /// The least cost; `None` when the exact search was not finished.
     pub exact: Option<f64>,
     /// Cost of the grammar that inference found, by the evaluator.
@@ -46,7 +46,7 @@ pub(crate) struct Comparison {
 
 impl Case {
     /// A random case of up to `most` tiles in each of one to three facades.
-    pub(crate) fn random(seed: u64, index: u64, most: usize) -> Self {
+    pub fn random(seed: u64, index: u64, most: usize) -> Self {
         let rng = &mut stream(seed, "exact", index);
         let bits: u32 = rng.random_range(0..16);
         let prices = prices();
@@ -69,7 +69,7 @@ impl Case {
     }
 
     /// The layouts as inference reads them.
-    pub(crate) fn layouts(&self) -> Vec<Facade> {
+    pub fn layouts(&self) -> Vec<Facade> {
         let named = self.facades.iter().enumerate();
         named
             .map(|(i, f)| f.facade(&format!("facade {i}")))
@@ -80,7 +80,7 @@ impl Case {
     ///
     /// # Panics
     /// When a grammar does not derive the layouts, or costs less than the exact search says.
-    pub(crate) fn compare(&self, iterations: u64, limits: &Limits) -> Comparison {
+    pub fn compare(&self, iterations: u64, limits: &Limits) -> Comparison {
         let settings = Settings {
             operations: self.operations,
             costs: self.costs,
@@ -124,17 +124,17 @@ impl Case {
 
 impl Comparison {
     /// True if inference says that its grammar is optimal.
-    pub(crate) fn proven(&self) -> bool {
+    pub fn proven(&self) -> bool {
         self.bound.is_some_and(|bound| self.cost <= bound + NOISE)
     }
 
     /// True if the grammar is known to be optimal.
-    pub(crate) fn optimal(&self) -> bool {
+    pub fn optimal(&self) -> bool {
         self.exact.is_some_and(|exact| self.cost <= exact + NOISE)
     }
 
     /// A bound that is above the least cost, in words; `None` if all are right.
-    pub(crate) fn fault(&self) -> Option<String> {
+    pub fn fault(&self) -> Option<String> {
         let exact = self.exact?;
         let above = |bound: f64| bound > exact + NOISE;
         if let Some(bound) = self.bound.filter(|b| above(*b)) {
@@ -157,7 +157,7 @@ impl fmt::Display for Case {
 }
 
 /// Costs to try, by name.
-pub(crate) fn prices() -> [(&'static str, Costs); 9] {
+pub fn prices() -> [(&'static str, Costs); 9] {
     let costs = |split, repeat, repeat_aba, sym_split, grid_split, successor| Costs {
         split,
         repeat,

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use edifice::shape::{Axis, Facade, Rect, Region};
+use edifice_shape::{Axis, Facade, Rect, Region};
 
 /// A terminal region: origin and extent along x and y, and a label.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Tile {
+pub struct Tile {
     /// Lower left corner, by axis.
     pub at: [u32; 2],
     /// Width and height.
@@ -17,7 +17,7 @@ pub(crate) struct Tile {
 
 /// Tiles that fill a rectangle, sorted: equal contents are equal values.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct Content {
+pub struct Content {
     /// Width and height.
     pub extent: [u32; 2],
     tiles: Vec<Tile>,
@@ -33,25 +33,25 @@ pub(super) fn along(axis: Axis) -> usize {
 
 impl Content {
     /// The tiles in any order.
-    pub(crate) fn new(extent: [u32; 2], mut tiles: Vec<Tile>) -> Self {
+    pub fn new(extent: [u32; 2], mut tiles: Vec<Tile>) -> Self {
         tiles.sort_unstable();
         Self { extent, tiles }
     }
 
     /// One tile.
-    pub(crate) fn tile(extent: [u32; 2], label: u8) -> Self {
+    pub fn tile(extent: [u32; 2], label: u8) -> Self {
         let at = [0, 0];
         Self::new(extent, vec![Tile { at, extent, label }])
     }
 
     /// A row of cells of width 1, one for each byte of `labels`.
-    pub(crate) fn row(labels: &str) -> Self {
+    pub fn row(labels: &str) -> Self {
         let cells = labels.bytes().map(|label| Self::tile([1, 1], label));
         Self::joined(Axis::X, &cells.collect::<Vec<_>>())
     }
 
     /// Parts side by side.
-    pub(crate) fn joined(axis: Axis, parts: &[Self]) -> Self {
+    pub fn joined(axis: Axis, parts: &[Self]) -> Self {
         let d = along(axis);
         let mut extent = parts[0].extent;
         extent[d] = 0;
@@ -69,7 +69,7 @@ impl Content {
     }
 
     /// The mirror image, from end to end of the axis.
-    pub(crate) fn mirrored(&self, axis: Axis) -> Self {
+    pub fn mirrored(&self, axis: Axis) -> Self {
         let d = along(axis);
         let tiles = self.tiles.iter().map(|tile| {
             let mut tile = *tile;
@@ -80,12 +80,12 @@ impl Content {
     }
 
     /// The tiles, sorted.
-    pub(crate) fn tiles(&self) -> &[Tile] {
+    pub fn tiles(&self) -> &[Tile] {
         &self.tiles
     }
 
     /// The label of a single tile.
-    pub(crate) fn label(&self) -> Option<u8> {
+    pub fn label(&self) -> Option<u8> {
         match self.tiles[..] {
             [tile] => Some(tile.label),
             _ => None,
@@ -93,7 +93,7 @@ impl Content {
     }
 
     /// Both ends, and every position between at which a straight line from side to side cuts no tile.
-    pub(crate) fn lines(&self, axis: Axis) -> Vec<u32> {
+    pub fn lines(&self, axis: Axis) -> Vec<u32> {
         let d = along(axis);
         let cuts = |at: u32, tile: &Tile| tile.at[d] < at && at < tile.at[d] + tile.extent[d];
         (0..=self.extent[d])
@@ -102,7 +102,7 @@ impl Content {
     }
 
     /// The content between two lines.
-    pub(crate) fn strip(&self, axis: Axis, from: u32, to: u32) -> Self {
+    pub fn strip(&self, axis: Axis, from: u32, to: u32) -> Self {
         let d = along(axis);
         let mut extent = self.extent;
         extent[d] = to - from;
@@ -119,7 +119,7 @@ impl Content {
     }
 
     /// The layout of which this is the content; a label is written as a letter.
-    pub(crate) fn facade(&self, name: &str) -> Facade {
+    pub fn facade(&self, name: &str) -> Facade {
         let region = |tile: &Tile| {
             let [x, y] = tile.at.map(f64::from);
             let [width, height] = tile.extent.map(f64::from);

@@ -1,19 +1,14 @@
 //! Random small layouts with structure: rows of cells, grids of cells, and blocks that are split, repeated,
 //! alternated and mirrored.
 
-use edifice::rng::Stream;
-use edifice::shape::Axis;
+use edifice_base::rng::Stream;
+use edifice_shape::Axis;
 use rand::RngExt;
 
 use super::content::{Content, Tile, along};
 
 /// One to three layouts, each of `least` to `most` tiles. Later ones are often variants of the first.
-pub(crate) fn random_layouts(
-    rng: &mut Stream,
-    count: usize,
-    least: usize,
-    most: usize,
-) -> Vec<Content> {
+pub fn random_layouts(rng: &mut Stream, count: usize, least: usize, most: usize) -> Vec<Content> {
     let mut layouts: Vec<Content> = Vec::new();
     while layouts.len() < count {
         let new = match layouts.first() {

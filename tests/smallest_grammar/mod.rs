@@ -12,26 +12,25 @@
 //! - [`smallest()`] minimizes `cost(S)` by branch and bound: a type is in `S` or not.
 //! - [`brute_force()`] enumerates rules as sequences of parts, and whole grammars of them, without any bound. It
 //!   judges [`smallest()`] on tiny layouts.
-#![allow(dead_code, unused_imports)] // each test and example uses its own part of this module
 
 mod brute_force;
 mod catalogue;
-pub(crate) mod compare;
+pub mod compare;
 mod content;
 mod landmarks;
-pub(crate) mod layouts;
+pub mod layouts;
 mod network;
 mod search;
 mod write;
 
-pub(crate) use brute_force::brute_force;
-pub(crate) use content::Content;
-pub(crate) use search::{Limits, smallest};
+pub use brute_force::brute_force;
+pub use content::Content;
+pub use search::{Limits, smallest};
 
-use edifice::methods::facade_grammar::Operations;
+use edifice_facade_grammar::Operations;
 
 /// Every set of operations: the split always, each other operation or not.
-pub(crate) fn operation_sets() -> impl Iterator<Item = Operations> {
+pub fn operation_sets() -> impl Iterator<Item = Operations> {
     (0..16).map(|bits| Operations {
         repeat: bits & 1 != 0,
         repeat_aba: bits & 2 != 0,

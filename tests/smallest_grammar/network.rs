@@ -7,9 +7,9 @@
 
 use std::collections::BTreeSet;
 
-use edifice::grammar::Costs;
-use edifice::methods::facade_grammar::Operations;
-use edifice::shape::Axis;
+use edifice_facade_grammar::Operations;
+use edifice_grammar::Costs;
+use edifice_shape::Axis;
 
 use super::catalogue::{Catalogue, Symbol};
 use super::content::{Content, along};

@@ -1,7 +1,7 @@
 //! Branch and bound over sets of non-terminal types.
 
-use edifice::grammar::{Costs, Grammar};
-use edifice::methods::facade_grammar::Operations;
+use edifice_facade_grammar::Operations;
+use edifice_grammar::{Costs, Grammar};
 
 use super::catalogue::Catalogue;
 use super::content::Content;
@@ -11,7 +11,7 @@ use super::write;
 
 /// Beyond these the search gives up.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+pub struct Limits {
     /// Region types.
     pub types: usize,
     /// Steps of all rules.
@@ -22,7 +22,7 @@ pub(crate) struct Limits {
 
 /// A grammar of least cost.
 #[derive(Debug, Clone)]
-pub(crate) struct Smallest {
+pub struct Smallest {
     /// Its cost.
     pub cost: f64,
     /// The grammar.
@@ -37,7 +37,7 @@ const NOISE: f64 = 1e-7;
 const PASSES: usize = 2;
 
 /// The smallest grammar of some facades; `None` when `limits` do not suffice.
-pub(crate) fn smallest(
+pub fn smallest(
     facades: &[Content],
     operations: Operations,
     costs: &Costs,

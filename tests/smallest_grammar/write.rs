@@ -1,7 +1,7 @@
 //! The grammar of a set of types, to be derived back by the evaluator.
 
-use edifice::grammar::{Grammar, Operation, Rule, Size, Start, Successor};
-use edifice::shape::Axis;
+use edifice_grammar::{Grammar, Operation, Rule, Size, Start, Successor};
+use edifice_shape::Axis;
 
 use super::catalogue::{Catalogue, Symbol};
 use super::content::Content;

@@ -2,6 +2,9 @@
 
 #![cfg(feature = "studio")]
 
+#[path = "../common/cases.rs"]
+mod cases;
+
 mod api;
 mod cities;
 mod client;

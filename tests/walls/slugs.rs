@@ -6,6 +6,9 @@ use std::process::Command;
 
 use crate::{has_word, root, rust_files};
 
+/// The crate that judges the proofs of facade grammars.
+const SMALLEST: &str = "tests/smallest_grammar";
+
 /// Files of a method that do not have its name: its commands, and programs that serve it alone.
 const OWN: &[(&str, &str)] = &[
     ("facade_grammar", "src/cli/grammar/evaluate.rs"),
@@ -14,6 +17,7 @@ const OWN: &[(&str, &str)] = &[
     ("facade_grammar", "src/cli/grammar/merge.rs"),
     ("facade_grammar", "examples/exact_search.rs"),
     ("facade_grammar", "examples/make_layouts.rs"),
+    ("facade_grammar", SMALLEST),
     ("procedural_logic", "src/cli/logic"),
     ("building_exteriors", "src/cli/building"),
     ("structure_completion", "src/cli/facade/"),
@@ -61,8 +65,11 @@ fn slugs() -> Vec<String> {
     slugs
 }
 
-/// True if a line names a method: its slug, a crate of it or the library of such a crate.
+/// True if a line names a method: its slug, a crate of it, the library of such a crate or the crate that judges its proofs.
 fn names(line: &str, slug: &str) -> bool {
+    if is_own(slug, SMALLEST) && (line.contains(SMALLEST) || line.contains("edifice-smallest-")) {
+        return true;
+    }
     let dashed = slug.replace('_', "-");
     let of_crate = |kind: &str| {
         [
@@ -157,7 +164,14 @@ fn names_own(slug: &str, target: &str) -> bool {
 /// The files of the tree, by their places, without those of a method and the lines that name it in registries.
 fn tree_without(slug: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut tree = BTreeMap::new();
-    for folder in ["src", "experiments", "datasets", "benches", "examples"] {
+    for folder in [
+        "src",
+        "experiments",
+        "datasets",
+        "benches",
+        "examples",
+        SMALLEST,
+    ] {
         add_folder(slug, Path::new(folder), &mut tree);
     }
     for file in ["Cargo.lock", "README.md"] {
