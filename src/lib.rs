@@ -54,7 +54,7 @@
 //!
 //! [linfa]: https://docs.rs/linfa
 
-pub use edifice_base::{Ended, Error, Progress, Result, Watch, error, rng, unwatched};
+pub use edifice_base::{Ended, Error, Progress, Result, Watch, Watched, error, rng, unwatched};
 pub use edifice_cluster as cluster;
 pub use edifice_grammar as grammar;
 pub use edifice_layout as layout;

@@ -1,5 +1,7 @@
 //! The three sets of houses.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 
 use edifice_base::{Error, Result};
@@ -7,11 +9,13 @@ use edifice_building_exteriors::attributes::attributes;
 use edifice_building_exteriors::data::dataset;
 use edifice_frame::Context;
 use edifice_io::{building_csv, building_json, json, read_bytes};
+use edifice_model::hierarchy::{Learned, Settings, learn};
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::split;
 use edifice_model::tables::schema::{FORMAT, Schema, VERSION};
 use edifice_model::{Cell, Table};
 use edifice_shape::Building;
+use edifice_sweep::Shared;
 
 /// The generator's own knowledge of the houses, which learning does not see.
 #[derive(Deserialize)]
@@ -43,6 +47,18 @@ pub(crate) fn shipped(ctx: &mut Context) -> Result<Shipped> {
         buildings,
         data,
         truth,
+    })
+}
+
+/// The model of the first houses of the shipped database. Several artefacts ask for that of the same ones: a run learns it once.
+///
+/// # Errors
+/// [`Error::Method`], those of learning.
+pub(crate) fn learned(first: &Dataset, settings: &Settings, seed: u64) -> Result<Arc<Learned>> {
+    static MODELS: Shared<Learned> = Shared::new();
+    let key = format!("{} {seed} {settings:?}", first.table.rows());
+    MODELS.get(key, || {
+        learn(&first.table, &first.groups, settings, seed).map_err(Error::method)
     })
 }
 

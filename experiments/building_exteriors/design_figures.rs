@@ -12,7 +12,6 @@ use edifice_building_exteriors::house::{Database, Generated, Joining, Options, m
 use edifice_building_exteriors::mass::iou;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_frame::Context;
-use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::{BoxStyle, Building, Side};
 
@@ -34,12 +33,12 @@ fn learned(ctx: &mut Context) -> Result<Learned> {
     let seen = shipped
         .data
         .select(&(0..buildings.len()).collect::<Vec<_>>());
-    let found = learn(&seen.table, &seen.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let found = data::learned(&seen, &settings, ctx.seed())?;
     Ok(Learned {
         model: ModelFile {
             groups: seen.groups,
             coding: Coding::Published,
-            model: found.model,
+            model: found.model.clone(),
         },
         database: Database::new(buildings).map_err(Error::method)?,
         held_out,

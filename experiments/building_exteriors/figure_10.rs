@@ -9,7 +9,7 @@ use edifice_building_exteriors::design::wanted_rows;
 use edifice_building_exteriors::house::{Database, Generated, Options, generate};
 use edifice_cluster::adjusted_rand_index;
 use edifice_frame::Context;
-use edifice_model::hierarchy::{Hierarchy, learn};
+use edifice_model::hierarchy::Hierarchy;
 use edifice_model::{Cell, Table as Data};
 use edifice_report::{Align, Colour, Figure, HeatMap, Row, Table, Tile, Tiles};
 use edifice_shape::{BoxStyle, Building, PlanUnion, Rect};
@@ -19,9 +19,8 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
-    let model = learned.model;
+    let learned = data::learned(&shipped.data, &settings, ctx.seed())?;
+    let model = &learned.model;
     let posterior = model.style_posterior(table).map_err(Error::method)?;
     let labels: Vec<usize> = posterior.iter().map(|p| data::argmax(p)).collect();
     let agreement = adjusted_rand_index(&labels, &shipped.truth.styles);

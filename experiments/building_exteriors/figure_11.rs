@@ -24,9 +24,7 @@ struct Edges {
 pub(crate) fn left(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
-    let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let learned = data::learned(&shipped.data, &settings, ctx.seed())?;
     let found = learned.model.lateral_edges();
     let truth = &shipped.truth.dependencies;
     let (precision, recall) = edge_agreement(&found, truth);
@@ -158,8 +156,7 @@ pub(crate) fn right(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let table = &shipped.data.table;
-    let learned =
-        learn(table, &shipped.data.groups, &settings, ctx.seed()).map_err(Error::method)?;
+    let learned = data::learned(&shipped.data, &settings, ctx.seed())?;
     let keep = ctx.budget().choose(20, 1000, 1000);
     let pool = ctx.budget().choose(100, 4000, 20000);
     let mut rng = stream(ctx.seed(), "building_exteriors/figure_11_right", 0);

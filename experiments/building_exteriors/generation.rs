@@ -17,7 +17,6 @@ use edifice_building_exteriors::mass::{
 use edifice_frame::Context;
 use edifice_generators_building_exteriors::wild;
 use edifice_model::Table as Data;
-use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Row, Table};
 use edifice_shape::Building;
 
@@ -67,8 +66,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("wild_houses", wilder);
     ctx.setting("houses", many);
     ctx.setting("houses_of_paper", slow);
-    let table = &shipped.data.table;
-    let learned = learn(table, &shipped.data.groups, &settings, seed).map_err(Error::method)?;
+    let learned = data::learned(&shipped.data, &settings, seed)?;
     let mut rng = stream(seed, "building_exteriors/generation", 0);
     let sampled = learned
         .model
@@ -110,7 +108,13 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             }
         }
     };
-    add("shipped", rows_of(table).into_iter().take(many).collect());
+    add(
+        "shipped",
+        rows_of(&shipped.data.table)
+            .into_iter()
+            .take(many)
+            .collect(),
+    );
     let wild_rows = (0..wilder as u64).map(|i| mass_attributes(&wild(WILD_SEED, i)));
     add("wild", wild_rows.collect());
     add("sampled", rows_of(&sampled.table));

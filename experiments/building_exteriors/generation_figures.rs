@@ -11,7 +11,6 @@ use edifice_building_exteriors::mass::{MASS, MassTarget, SearchLimits, search};
 use edifice_frame::Context;
 use edifice_io::building_json;
 use edifice_io::scene_png::picture_png;
-use edifice_model::hierarchy::learn;
 use edifice_report::{Align, Chart, Figure, Scale, Series, Table};
 use edifice_scene::trace::{framing, trace};
 
@@ -78,8 +77,7 @@ pub(crate) fn figure_15(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let seed = ctx.seed();
     let settings = settings(ctx);
-    let (table, groups) = (&shipped.data.table, &shipped.data.groups);
-    let learned = learn(table, groups, &settings, seed).map_err(Error::method)?;
+    let learned = data::learned(&shipped.data, &settings, seed)?;
     let database = Database::new(shipped.buildings).map_err(Error::method)?;
     let mut rng = stream(seed, "building_exteriors/figure_15", 0);
     let mut houses = Vec::new();

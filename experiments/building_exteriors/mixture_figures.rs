@@ -8,7 +8,6 @@ use edifice_building_exteriors::attributes::COLUMNS;
 use edifice_building_exteriors::design::wanted_rows;
 use edifice_building_exteriors::house::{Database, Generated, Options, generate};
 use edifice_frame::Context;
-use edifice_model::hierarchy::learn;
 use edifice_model::tables::mixture::Baseline;
 use edifice_report::{Align, Table};
 
@@ -133,10 +132,10 @@ pub(crate) fn figure_14(ctx: &mut Context) -> Result<()> {
     let shipped = data::shipped(ctx)?;
     let settings = settings(ctx);
     let seed = ctx.seed();
-    let (table, groups) = (&shipped.data.table, &shipped.data.groups);
+    let table = &shipped.data.table;
     let most = *settings.styles.end();
     let gmm = Baseline::learn(table, &settings.priors.linear, most, seed).map_err(Error::method)?;
-    let learned = learn(table, groups, &settings, seed).map_err(Error::method)?;
+    let learned = data::learned(&shipped.data, &settings, seed)?;
     let has = |row: usize, c| data::number(table, c, row).is_some_and(|w| w > 0.5);
     let house = (0..table.rows())
         .find(|&row| has(row, "garage.w") && has(row, "porch.front.w"))

@@ -49,7 +49,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     if !shipped && ctx.budget() != Budget::Smoke {
         for set in ["ecp2011", "graz50", "cmp"] {
             if used.iter().any(|i| i.dataset == set) && used.iter().any(|i| i.dataset != set) {
-                let model = folds::model(&used, ctx.seed(), |i| used[i].dataset != set)?;
+                let model = folds::fast_model(&used, ctx.seed(), |i| used[i].dataset != set)?;
                 others.insert(set, model);
             }
         }

@@ -19,7 +19,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .filter(|i| i.layout.count(Class::Window) > 7)
         .collect();
     let shown = items.len() / 2;
-    let model = folds::model(&items, ctx.seed(), |i| i != shown)?;
+    let model = folds::fast_model(&items, ctx.seed(), |i| i != shown)?;
     let layout = &items[shown].layout;
     let mut figure =
         Figure::new("Observed, low-rank completion, default method, truth", 4).cell(240.0, 240.0);

@@ -27,7 +27,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         .collect();
     items.shuffle(&mut stream(ctx.seed(), "figure 9", 0));
     let (shown, rest) = items.split_at(count.min(items.len() / 2));
-    let model = folds::model(rest, ctx.seed(), |_| true)?;
+    let model = folds::fast_model(rest, ctx.seed(), |_| true)?;
     let mut figure =
         Figure::new("Truth and completion (added elements outlined)", 2 * PAIRS).cell(150.0, 170.0);
     for (k, item) in shown.iter().enumerate() {

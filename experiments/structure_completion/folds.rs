@@ -4,8 +4,8 @@ use rand::seq::SliceRandom;
 
 use super::data::Item;
 use edifice_base::rng::stream;
-use edifice_base::unwatched;
 use edifice_base::{Error, Result};
+use edifice_base::{Watched, unwatched};
 use edifice_structure_completion::best::learn::twins;
 use edifice_structure_completion::layout::{Class, Layout};
 use edifice_structure_completion::model::{Model, shipped_model};
@@ -97,8 +97,20 @@ struct NoWindow(usize);
 
 /// A model of the items that `keep` keeps.
 pub(crate) fn model(items: &[&Item], seed: u64, keep: impl Fn(usize) -> bool) -> Result<Model> {
-    let kept = (0..items.len()).filter(|&i| keep(i));
-    let layouts = kept.map(|i| items[i].layout.clone()).collect();
-    let trained = Model::train(layouts, seed, &unwatched).map_err(Error::method)?;
+    let trained = Model::train(kept(items, keep), seed, &unwatched).map_err(Error::method)?;
     Ok(trained.model)
+}
+
+/// The same without the paper's part, whose learning takes longest and which fast methods do not ask.
+pub(crate) fn fast_model(
+    items: &[&Item],
+    seed: u64,
+    keep: impl Fn(usize) -> bool,
+) -> Result<Model> {
+    Model::of_best(kept(items, keep), seed, &Watched::new(&unwatched)).map_err(Error::method)
+}
+
+fn kept(items: &[&Item], keep: impl Fn(usize) -> bool) -> Vec<Layout> {
+    let kept = (0..items.len()).filter(|&i| keep(i));
+    kept.map(|i| items[i].layout.clone()).collect()
 }

@@ -132,14 +132,18 @@ impl Trial for Completion {
             return Err(Error::method(Refused::LeftOut));
         }
         static MODELS: Shared<Model> = Shared::new();
-        let is_learnt = settings.method.is_learnt();
-        let model = MODELS.get(format!("{is_learnt} {key}"), || {
+        let (is_learnt, is_slow) = (settings.method.is_learnt(), settings.method.is_slow());
+        let model = MODELS.get(format!("{is_learnt} {is_slow} {key}"), || {
+            let layouts = question.layouts.to_vec();
             if !is_learnt {
-                return Ok(Model::of_spacing(question.layouts.to_vec()));
+                return Ok(Model::of_spacing(layouts));
             }
-            let trained = Model::train(question.layouts.to_vec(), seed, &watched.inner());
-            let trained = trained.map_err(Error::method)?;
-            whole(trained.model, trained.ended)
+            // Methods that search ask the paper's part, which takes longest to learn; the default method does not.
+            let model = match is_slow {
+                true => Model::train(layouts, seed, &watched.inner()).map(|t| t.model),
+                false => Model::of_best(layouts, seed, watched),
+            };
+            whole(model.map_err(Error::method)?, watched.ended())
         })?;
         let rng = &mut stream(seed, "completion", 0);
         let found = method::complete(settings.method, partial, &model, 1, rng);

@@ -55,7 +55,7 @@ fn observe(layout: &Layout, share: f64, seed: u64, k: u64) -> (PartialLayout, Ve
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, ctx.budget().choose(3, 16, 100));
-    let model = folds::model(&rest, ctx.seed(), |_| true)?;
+    let model = folds::fast_model(&rest, ctx.seed(), |_| true)?;
     let seed = ctx.seed();
     let units: Vec<_> = shown.iter().enumerate().collect();
     let found: Vec<Found> = ctx.units(

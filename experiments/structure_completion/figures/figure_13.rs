@@ -51,7 +51,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let most = order[order.len() - count..].iter();
     let chosen: Vec<usize> = order[..count].iter().chain(most).map(|o| o.1).collect();
     // None of them is learnt from.
-    let model = folds::model(&all, seed, |i| !chosen.contains(&i))?;
+    let model = folds::fast_model(&all, seed, |i| !chosen.contains(&i))?;
     let hide = |index: usize| {
         Task::Side50.hide(
             &items[index].layout,

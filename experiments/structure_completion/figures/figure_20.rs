@@ -28,7 +28,7 @@ const APART: f32 = 5.0;
 pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     let items = facades(ctx)?;
     let (shown, rest) = split(&items, 1);
-    let model = folds::model(&rest, ctx.seed(), |_| true)?;
+    let model = folds::fast_model(&rest, ctx.seed(), |_| true)?;
     let Some(item) = shown.first() else {
         ctx.skip("no facade");
         return Ok(());
