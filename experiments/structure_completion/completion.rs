@@ -37,14 +37,18 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
     ctx.setting("folds", folds);
     let all = data::items(ctx)?;
     let shipped = all.iter().all(|i| i.dataset == "shipped");
+    // The methods that search take seconds a facade.
+    let searched = ctx.budget().choose(1, 3, usize::MAX);
     // The few shipped layouts are too few to leave any out.
     let Parted {
         used,
         apart,
         fold,
+        every,
         models,
         by_default,
-    } = Parted::new(&all, folds, shipped, ctx.seed())?;
+    } = Parted::new(&all, folds, shipped, searched, ctx.seed())?;
+    ctx.setting("facades_of_slow_methods", searched.min(used.len()));
     let mut others: BTreeMap<&str, Model> = BTreeMap::new();
     if !shipped && ctx.budget() != Budget::Smoke {
         for set in ["ecp2011", "graz50", "cmp"] {
@@ -54,10 +58,6 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
             }
         }
     }
-    // The methods that search take seconds a facade.
-    let searched = ctx.budget().choose(1, 3, used.len());
-    ctx.setting("facades_of_slow_methods", searched);
-    let every = used.len().div_ceil(searched.max(1)).max(1);
     // A part of the facades shows that the path works.
     let step = ctx.budget().choose(4, 1, 1);
     let mut units = Vec::new();

@@ -44,7 +44,9 @@ pub(crate) struct Parted<'a> {
     pub apart: Vec<&'a Item>,
     /// The fold of each of `used`.
     pub fold: Vec<usize>,
-    /// The model of each fold.
+    /// Of `used`, the first and every so manyth after it is completed by the methods that search, too.
+    pub every: usize,
+    /// The model of each fold; one that is not asked by the methods that search has no part of the paper's.
     pub models: Vec<Model>,
     /// True if there are no two facades that differ, so that the model that ships completes all.
     pub by_default: bool,
@@ -53,11 +55,17 @@ pub(crate) struct Parted<'a> {
 impl<'a> Parted<'a> {
     /// Divides the facades that have windows into at most `count` folds. Those out of scope stand apart, unless fewer than two of
     /// those in scope differ: then, and with `all`, they are divided too. Facades that are all near-twins leave none to learn
-    /// from.
+    /// from. The methods that search complete at most `searched` of them.
     ///
     /// # Errors
     /// [`Error::Method`] if no facade has a window; those of learning.
-    pub(crate) fn new(items: &'a [Item], count: usize, all: bool, seed: u64) -> Result<Self> {
+    pub(crate) fn new(
+        items: &'a [Item],
+        count: usize,
+        all: bool,
+        searched: usize,
+        seed: u64,
+    ) -> Result<Self> {
         let usable = items.iter().filter(|i| i.layout.count(Class::Window) > 0);
         let (mut used, mut apart): (Vec<&Item>, Vec<&Item>) =
             usable.partition(|i| all || i.in_scope);
@@ -72,16 +80,23 @@ impl<'a> Parted<'a> {
         let count = count.min(distinct(&groups).len());
         let by_default = count < 2;
         let fold = dealt(&groups, count, seed);
+        let every = used.len().div_ceil(searched.max(1)).max(1);
+        let of_fold = |f: usize| {
+            let others = |i: usize| fold[i] != f;
+            match fold.iter().step_by(every).any(|of| *of == f) {
+                true => model(&used, seed, others),
+                false => fast_model(&used, seed, others),
+            }
+        };
         let models = match by_default {
             true => vec![shipped_model().map_err(Error::method)?],
-            false => (0..count)
-                .map(|f| model(&used, seed, |i| fold[i] != f))
-                .collect::<Result<_>>()?,
+            false => (0..count).map(of_fold).collect::<Result<_>>()?,
         };
         Ok(Self {
             used,
             apart,
             fold,
+            every,
             models,
             by_default,
         })
