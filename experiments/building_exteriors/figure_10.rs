@@ -89,7 +89,7 @@ pub(crate) fn run(ctx: &mut Context) -> Result<()> {
         "The plans are those of the two training houses of highest density of each style; the picture of houses shows two \
          samples of each style, as in the paper: the most probable of 40 draws, and the most probable of 40 others.",
     );
-    sampled_houses(ctx, &model, shipped.buildings)
+    sampled_houses(ctx, model, shipped.buildings)
 }
 
 /// Two houses built from samples of each style, a style a column.
