@@ -5,6 +5,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 
+use crate::cases::cases;
+
 fn edifice(folder: &Path, args: &[&str], threads: &str) -> (i32, String) {
     let mut command = Command::cargo_bin("edifice").unwrap();
     let output = command
@@ -257,7 +259,8 @@ fn one_and_two_threads_write_the_same_bytes() {
     }
     let vary = |to: &str, threads: &str| {
         std::fs::write(folder.path().join("v.building.json"), &shipped()[2]).unwrap();
-        let args = ["variations", "v.building.json", "-n", "2", "-o", to];
+        let many = (1 + cases(2)).to_string();
+        let args = ["variations", "v.building.json", "-n", &many, "-o", to];
         assert_eq!(edifice(folder.path(), &args, threads).0, 0);
         contents(&folder.path().join(to))
     };

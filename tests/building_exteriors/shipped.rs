@@ -194,7 +194,7 @@ const PARENTS: [(&str, &[&str]); 10] = [
 
 #[test]
 fn with_kinds_known_the_nine_dependencies_have_evidence_and_no_other_has() {
-    let made = houses(1, 2000);
+    let made = houses(1, 2000 * cases(2));
     let rows: Vec<Vec<f64>> = made
         .iter()
         .map(|h| {

@@ -126,7 +126,7 @@ fn training_gives_the_same_model_again() {
         .unwrap()
         .layouts()
         .into_iter()
-        .take(2)
+        .take(2 * cases(2))
         .collect();
     let train = || PaperModel::train(&layouts, 3, &edifice::unwatched).unwrap();
     let learnt = train();
