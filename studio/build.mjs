@@ -1,8 +1,9 @@
-// Builds the page into src/studio/assets, from which it becomes part of the program.
+// Builds the page into src/studio/assets, from which it becomes part of the program, or into the folder that is named.
 import { build } from "esbuild";
 import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
+import { resolve } from "node:path";
 
-const out = new URL("../src/studio/assets/", import.meta.url).pathname;
+const out = (process.argv[2] ? resolve(process.argv[2]) : new URL("../src/studio/assets", import.meta.url).pathname) + "/";
 const here = new URL("./src/", import.meta.url).pathname;
 
 await build({

@@ -21,6 +21,7 @@ mod detailed;
 mod elements;
 mod facade;
 mod hidden;
+mod label_difference;
 mod label_grid;
 mod labelled;
 mod photograph;

@@ -232,7 +232,8 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn one_and_two_threads_write_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let (header, rows) = table(folder.path(), 3);
+    let houses = 1 + cases(2);
+    let (header, rows) = table(folder.path(), houses);
     let lines: Vec<String> = std::iter::once(&header)
         .chain(&rows)
         .map(|r| r.join(","))
@@ -253,13 +254,13 @@ fn one_and_two_threads_write_the_same_bytes() {
         contents(&folder.path().join(to))
     };
     let (one, two) = (build("one", "1"), build("two", "2"));
-    assert_eq!(one.len(), 3 * 7 + 2);
+    assert_eq!(one.len(), houses * 7 + 2);
     for (a, b) in one.iter().zip(&two) {
         assert!(a == b, "{}", a.0);
     }
     let vary = |to: &str, threads: &str| {
         std::fs::write(folder.path().join("v.building.json"), &shipped()[2]).unwrap();
-        let many = (1 + cases(2)).to_string();
+        let many = houses.to_string();
         let args = ["variations", "v.building.json", "-n", &many, "-o", to];
         assert_eq!(edifice(folder.path(), &args, threads).0, 0);
         contents(&folder.path().join(to))

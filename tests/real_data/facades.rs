@@ -1,8 +1,8 @@
 //! Every facade of the ECP, Graz and CMP databases: reads, decomposes into a splittable tiling,
 //! repaints exactly, and regularizes within the tolerance.
 //!
-//! Needs the data in the folder that `EDIFICE_DATA` names. `cargo test --release --test
-//! real_data_facades -- --nocapture` prints the statistics.
+//! Needs the data in the folder that `EDIFICE_DATA` names. `cargo test --release --test real_data facades
+//! -- --nocapture` prints the statistics.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -11,6 +11,7 @@ use edifice::io::{self, LabelMap, ReadOptions};
 use edifice::layout::regularize::regularize_grid;
 use edifice::shape::{LabelGrid, decompose, splittable};
 
+use crate::cases::cases;
 use crate::common::real_data;
 
 /// Files of a folder with an extension, sorted.
@@ -225,7 +226,7 @@ fn regularized_cmp() {
     let Some(grids) = label_images("facades/cmp") else {
         return;
     };
-    for (_, before, after) in regularize_all("cmp", &grids[..12], "window") {
+    for (_, before, after) in regularize_all("cmp", &grids[..cases(12)], "window") {
         assert!(after <= before);
     }
 }

@@ -10,7 +10,7 @@ use std::process::Command;
 /// Lines that wait for a user.
 const WAITING: [&str; 1] = ["edifice studio"];
 /// Parts of lines that take more than some seconds in a debug build.
-const SLOW: [&str; 14] = [
+const SLOW: [&str; 16] = [
     "edifice reproduce",
     "edifice facade train",
     "edifice sweep run ablation.toml --out ablation ",
@@ -25,6 +25,8 @@ const SLOW: [&str; 14] = [
     "edifice model evaluate",
     "edifice model learn plans.csv --schema",
     "edifice building build sampled.csv",
+    "edifice grammar town boulevard.cga --buildings 400",
+    "edifice model learn plans.csv -o plans.table-model.json --from",
 ];
 /// Files that slow lines make and later lines read, and the shipped files in their place.
 const MADE: [(&str, &str); 1] = [(

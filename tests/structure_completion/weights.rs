@@ -9,6 +9,8 @@ use edifice::rng::stream;
 use edifice::shape::Rect;
 use edifice::unwatched;
 
+use crate::cases::cases;
+
 /// Windows in a lattice over doors.
 fn layout(columns: u32, rows: u32) -> Layout {
     let mut elements = Vec::new();
@@ -99,7 +101,7 @@ fn weights_come_back_by_the_unbiased_update_only() {
     let model = shipped.paper.as_ref().unwrap();
     let truth = model.score.weights;
     let whole: Vec<Layout> = shipped.layouts();
-    let drawn: Vec<Sites> = (0..80)
+    let drawn: Vec<Sites> = (0..cases(80).max(40))
         .map(|i| {
             let mut rng = stream(5, "draw", i as u64);
             let sites = Sites::of_layout(&whole[i % whole.len()], &mut rng);

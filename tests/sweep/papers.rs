@@ -185,8 +185,8 @@ fn fan_figures_17_and_18() {
         .map(|name| format!("layouts/{name}"))
         .collect();
     let both = [
-        ("figure_18", "structure_completion_figure_18", 11),
         ("figure_17", "structure_completion_figure_17", 2),
+        ("figure_18", "structure_completion_figure_18", 11),
     ];
     for (artefact_name, name, arms) in both.into_iter().take(cases(both.len())) {
         let rows = artefact("structure_completion", artefact_name);

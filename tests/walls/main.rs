@@ -6,6 +6,7 @@ mod crates;
 mod models;
 mod slugs;
 mod surface;
+mod untested;
 
 use std::path::{Path, PathBuf};
 

@@ -10,8 +10,12 @@ use edifice_model::program::{
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 const DRAWS: usize = 31;
-const ROUNDS: usize = 400;
 const BINS: usize = 8;
+
+/// Data sets: half of those that are made where `EDIFICE_ALL_CASES` is set, as in `.ci/full`.
+fn rounds() -> u64 {
+    std::env::var_os("EDIFICE_ALL_CASES").map_or(200, |_| 400)
+}
 
 /// Ranks of the first choice over many rounds, and the probability of a larger chi-square.
 fn calibrate<P: Program + Sync + Copy>(
@@ -22,7 +26,8 @@ fn calibrate<P: Program + Sync + Copy>(
     target: &'static str,
 ) -> f64 {
     let mut counts = [0_u32; BINS];
-    for round in 0..ROUNDS as u64 {
+    let rounds = rounds();
+    for round in 0..rounds {
         let mut rng = stream(7, name, round);
         let (trace, _) = prior(&program, &mut rng).unwrap();
         let seen: Vec<(Address, Value)> = trace
@@ -46,7 +51,7 @@ fn calibrate<P: Program + Sync + Copy>(
         let rank = below.count();
         counts[rank * BINS / (DRAWS + 1)] += 1;
     }
-    let expected = ROUNDS as f64 / BINS as f64;
+    let expected = rounds as f64 / BINS as f64;
     let square: f64 = counts
         .iter()
         .map(|&c| (f64::from(c) - expected).powi(2) / expected)
