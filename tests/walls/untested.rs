@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{root, rust_files};
 
-/// What makes a test of a crate's own sources.
+/// Marks of a test among a crate's own sources.
 const MARKS: [&str; 3] = ["#[test]", "proptest!", "cfg(test)"];
 
 /// Folders of the crates of the workspace, but for the root's.
