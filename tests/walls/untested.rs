@@ -1,4 +1,5 @@
-//! Crates without unit tests build no program for them, and a unit test that is added to one does not go unseen.
+//! Crates without unit tests, or without tests in their documentation, build no program for them; one that is added there does not go
+//! unseen.
 
 use std::path::{Path, PathBuf};
 
@@ -16,13 +17,13 @@ fn folders() -> Vec<PathBuf> {
     known.map(PathBuf::from).collect()
 }
 
-/// True if a library builds no program of unit tests.
-fn is_untested(folder: &Path) -> bool {
+/// True if the manifest of a folder says this of its library.
+fn says(folder: &Path, setting: &str) -> bool {
     let manifest = std::fs::read_to_string(root().join(folder).join("Cargo.toml"));
     let manifest = manifest.expect("a manifest");
     let library = manifest.split("[lib]").nth(1).unwrap_or_default();
     let library = library.split("\n[").next().unwrap_or_default();
-    library.lines().any(|line| line == "test = false")
+    library.lines().any(|line| line == setting)
 }
 
 /// True if a file belongs to a crate, and not to one in a folder below it or to its tests, benches and examples.
@@ -35,36 +36,70 @@ fn belongs(file: &Path, folder: &Path, folders: &[PathBuf]) -> bool {
     !other && !apart.iter().any(|name| file.starts_with(name))
 }
 
-#[test]
-fn crates_without_unit_tests_have_none() {
+/// Files of the crates of which the manifest says this, with their text.
+fn files(setting: &str) -> Vec<(PathBuf, String)> {
     let folders = folders();
     assert!(folders.len() > 30, "only {} crates", folders.len());
-    let mut seen = 0;
-    let mut faults = Vec::new();
-    let mut own = vec![
-        ("src/lib.rs".into(), Path::new("src")),
-        ("src/main.rs".into(), Path::new("src")),
-    ];
-    let untested = folders.iter().filter(|folder| is_untested(folder));
-    for folder in untested {
+    let mut found = Vec::new();
+    for folder in folders.iter().filter(|folder| says(folder, setting)) {
         let files = rust_files(&folder.to_string_lossy()).into_iter();
-        let files = files.filter(|file| belongs(file, folder, &folders));
-        own.extend(files.map(|file| (file, folder.as_path())));
+        found.extend(files.filter(|file| belongs(file, folder, &folders)));
     }
-    assert!(
-        is_untested(Path::new("")),
-        "the root's own tests are in tests"
-    );
-    for (file, folder) in own {
-        seen += 1;
+    let text = |file: PathBuf| {
         let text = std::fs::read_to_string(root().join(&file)).expect("readable");
-        if MARKS.iter().any(|mark| text.contains(mark)) {
-            let (file, folder) = (file.display(), folder.display());
-            faults.push(format!(
-                "{file}: a unit test, which {folder}/Cargo.toml does not build"
-            ));
+        (file, text)
+    };
+    found.into_iter().map(text).collect()
+}
+
+/// True if a block of code of the documentation would be compiled as a test.
+fn has_doc_test(text: &str) -> bool {
+    let mut open = false;
+    for line in text.lines().map(str::trim_start) {
+        let comment = line.strip_prefix("///").or(line.strip_prefix("//!"));
+        let Some(info) = comment.and_then(|c| c.trim().strip_prefix("```")) else {
+            continue;
+        };
+        open = !open;
+        let other = ["text", "ignore", "toml", "json", "sh", "csv"];
+        if open && !other.iter().any(|language| info.starts_with(language)) {
+            return true;
         }
     }
-    assert!(seen > 100, "only {seen} files of crates without unit tests");
-    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+    false
+}
+
+#[test]
+fn crates_without_unit_tests_have_none() {
+    let mut files = files("test = false");
+    assert!(says(Path::new(""), "test = false"));
+    for name in ["src/lib.rs", "src/main.rs"] {
+        let text = std::fs::read_to_string(root().join(name)).expect("readable");
+        files.push((name.into(), text));
+    }
+    assert!(files.len() > 100, "only {} files", files.len());
+    let tested = files.iter();
+    let tested: Vec<&PathBuf> = tested
+        .filter(|(_, text)| MARKS.iter().any(|mark| text.contains(mark)))
+        .map(|(file, _)| file)
+        .collect();
+    assert!(
+        tested.is_empty(),
+        "unit tests in crates whose manifest says `test = false`: {tested:?}"
+    );
+}
+
+#[test]
+fn crates_without_tests_in_their_documentation_have_none() {
+    assert!(has_doc_test("/// ```\n/// f();\n/// ```"));
+    assert!(has_doc_test("    //! ```no_run\n//! f();"));
+    assert!(!has_doc_test("/// ```text\n/// a\n/// ```\nfn f() {}"));
+    let files = files("doctest = false");
+    assert!(files.len() > 400, "only {} files", files.len());
+    let tested = files.iter().filter(|(_, text)| has_doc_test(text));
+    let tested: Vec<&PathBuf> = tested.map(|(file, _)| file).collect();
+    assert!(
+        tested.is_empty(),
+        "tests in the documentation of crates whose manifest says `doctest = false`: {tested:?}"
+    );
 }
