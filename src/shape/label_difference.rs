@@ -3,8 +3,8 @@
 use crate::{Facade, Rect, Region};
 
 impl Facade {
-    /// Share of the area of `truth` where the label of this facade is another one, from 0 to 1: both lie at the origin, and an area that only
-    /// one of them labels differs.
+    /// The area where the labels of two facades at the same origin differ, relative to the area of `truth`: 0 where they are alike. An
+    /// area that only one of them labels differs, so that the ratio can be above 1 where this facade is the larger one.
     pub fn label_difference(&self, truth: &Facade) -> f64 {
         let edges = |low: fn(&Rect) -> f64, high: fn(&Rect) -> f64, end: f64| {
             let all = self.regions.iter().chain(&truth.regions);
@@ -79,5 +79,12 @@ mod tests {
     fn the_share_that_differs_by_hand() {
         assert_eq!(facade(4.0).label_difference(&facade(4.0)), 0.0);
         assert!((facade(4.0).label_difference(&facade(5.0)) - 0.1).abs() < 1e-12);
+        // What lies outside the other's outline differs, too.
+        let region = Region {
+            label: "a".into(),
+            rect: Rect::new(0.0, 0.0, 30.0, 2.0),
+        };
+        let long = Facade::new("f", "px", 30.0, 2.0, vec![region]).unwrap();
+        assert!((long.label_difference(&facade(4.0)) - 2.6).abs() < 1e-12);
     }
 }

@@ -42,6 +42,16 @@ impl Places {
         ((at / self.cell[axis]).max(0.0) as usize).min(self.counts[axis] - 1)
     }
 
+    /// Numbers of the items of a cell, the latest first.
+    fn of_cell(&self, column: usize, row: usize) -> impl Iterator<Item = u32> + '_ {
+        let mut at = self.heads[row * self.counts[0] + column];
+        std::iter::from_fn(move || {
+            let (item, next) = *self.entries.get(at as usize)?;
+            at = next;
+            Some(item)
+        })
+    }
+
     /// Lists an item.
     pub(crate) fn insert(&mut self, item: u32, rect: &Rect) {
         let [across, up] = spans(rect);
@@ -57,21 +67,9 @@ impl Places {
     /// True if the test holds for an item that may meet the rectangle; one item may be tested several times.
     pub(crate) fn any_near(&self, rect: &Rect, test: impl Fn(u32) -> bool) -> bool {
         let [across, up] = spans(rect);
-        let (left, right) = (self.cell_of(0, across.0), self.cell_of(0, across.1));
-        // Plain loops, here and in `next`: completions ask it millions of times, and tests are compiled with little inlining.
-        for row in self.cell_of(1, up.0)..=self.cell_of(1, up.1) {
-            for column in left..=right {
-                let mut at = self.heads[row * self.counts[0] + column];
-                while at != END {
-                    let (item, next) = self.entries[at as usize];
-                    if test(item) {
-                        return true;
-                    }
-                    at = next;
-                }
-            }
-        }
-        false
+        let columns = self.cell_of(0, across.0)..=self.cell_of(0, across.1);
+        let mut rows = self.cell_of(1, up.0)..=self.cell_of(1, up.1);
+        rows.any(|row| (columns.clone()).any(|column| self.of_cell(column, row).any(&test)))
     }
 
     /// The least distance that `distance` gives to an item whose centre lies along an axis from `at`, forward or
@@ -84,10 +82,7 @@ impl Places {
         strip: (f64, f64),
         distance: impl Fn(u32) -> Option<f64>,
     ) -> Option<f64> {
-        let lines = (
-            self.cell_of(1 - axis, strip.0),
-            self.cell_of(1 - axis, strip.1),
-        );
+        let lines = self.cell_of(1 - axis, strip.0)..=self.cell_of(1 - axis, strip.1);
         let first = self.cell_of(axis, at);
         let mut least = f64::INFINITY;
         let steps = if forward {
@@ -97,19 +92,14 @@ impl Places {
         };
         for step in 0..=steps {
             let cell = if forward { first + step } else { first - step };
-            for line in lines.0..=lines.1 {
+            for line in lines.clone() {
                 let (column, row) = if axis == 0 {
                     (cell, line)
                 } else {
                     (line, cell)
                 };
-                let mut at = self.heads[row * self.counts[0] + column];
-                while at != END {
-                    let (item, next) = self.entries[at as usize];
-                    if let Some(distance) = distance(item) {
-                        least = distance.min(least);
-                    }
-                    at = next;
+                for item in self.of_cell(column, row) {
+                    least = distance(item).map_or(least, |d| d.min(least));
                 }
             }
             // Centres in further cells are at least this far.
