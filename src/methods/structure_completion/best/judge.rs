@@ -10,18 +10,22 @@
 //! lines (`regular`), windows that then stand alone on a line are left out, and the balconies of each row are made even
 //! (`rows`). The layout of the highest score is the one of least expected risk among those that were tried.
 //!
+//! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there.
+//!
 //! Doors are not chosen by their score. A facade that is seen without a door gets at most one, and that is asked beforehand
 //! ([`super::doors`]); one that shows a single door gets no other; one that shows several may get more.
 
+use super::belong::is_host;
 use super::by_place::ByPlace;
 use super::candidates::Candidates;
 use super::observation::{Observation, of};
 use super::regular::{clash, regular, without_loners};
+use super::rhythm::Continued;
 use super::rows;
 use crate::completion::Reason;
 use crate::layout::lines::numbers;
 use crate::layout::{Class, Element};
-use edifice_shape::Axis;
+use edifice_shape::{Axis, Rect};
 
 /// A window is on a line of a lattice when its centre is nearer than this share of the typical extent.
 const ON_LINE: f64 = 0.15;
@@ -30,7 +34,7 @@ const SAME: f64 = 0.3;
 
 /// A coherent layout: added elements, each with the candidate that it was or that stands for it, and its score.
 #[derive(Debug, Clone)]
-pub struct Layout {
+pub(super) struct Layout {
     /// Added elements, those of one class by falling probability but for balconies.
     pub added: Vec<(Element, Reason, usize)>,
     /// Expected score, 0 to 1.
@@ -40,7 +44,7 @@ pub struct Layout {
 }
 
 /// A judge of layouts by the values of their candidates.
-pub struct Judge<'a> {
+pub(super) struct Judge<'a> {
     observation: &'a Observation<'a>,
     candidates: &'a Candidates,
     value: Vec<f64>,
@@ -50,21 +54,26 @@ pub struct Judge<'a> {
     least: f64,
     /// The door that a facade without one gets.
     door: Option<usize>,
+    /// What rows with a rhythm of their own continue to, and the candidates of these elements.
+    own: Vec<(Continued, Vec<usize>)>,
     expected: f64,
 }
 
 impl<'a> Judge<'a> {
     /// Judges by the value of each candidate (the mean of its probabilities) and the expected number of hidden elements;
-    /// no window of less than `least` is added; `door` is the one that the facade gets.
-    pub fn new(
+    /// no window of less than `least` is added; `door` is the one that the facade gets, `own` the rows with a rhythm of their own.
+    pub(super) fn new(
         observation: &'a Observation<'a>,
         candidates: &'a Candidates,
         value: Vec<f64>,
         least: f64,
         door: Option<usize>,
+        own: Vec<(Continued, Vec<usize>)>,
         expected: f64,
     ) -> Self {
         let mut order: Vec<usize> = (0..value.len()).collect();
+        // What is set is not chosen.
+        order.retain(|c| !own.iter().any(|(_, set)| set.contains(c)));
         order.sort_by(|&a, &b| value[b].total_cmp(&value[a]).then(a.cmp(&b)));
         Self {
             observation,
@@ -73,6 +82,7 @@ impl<'a> Judge<'a> {
             order,
             least,
             door,
+            own,
             expected,
         }
     }
@@ -145,12 +155,49 @@ impl<'a> Judge<'a> {
             let kept = whole(&added).added.into_iter();
             added = kept.map(|(e, r, k)| (e, r, added[k].2)).collect();
         }
+        self.continue_rows(&mut added);
         let seen = &self.observation.partial.observed;
         Layout {
             score: self.score(added.iter().map(|a| a.2)),
             numbers: numbers(seen.iter().chain(added.iter().map(|a| &a.0))),
             added,
         }
+    }
+
+    /// Puts what rows with a rhythm of their own continue to in the place of what is there, doors aside.
+    fn continue_rows(&self, added: &mut Vec<(Element, Reason, usize)>) {
+        if self.own.is_empty() {
+            return;
+        }
+        let doors: Vec<Element> = (added.iter().map(|a| a.0))
+            .filter(|e| e.class == Class::Door)
+            .collect();
+        let set: Vec<(Element, Reason, usize)> = (self.own.iter())
+            .flat_map(|(row, candidates)| row.elements.iter().zip(candidates))
+            .filter(|(e, _)| !doors.iter().any(|d| clash(d, e)))
+            .map(|(e, c)| (*e, Reason::Lattice, *c))
+            .collect();
+        let stays = |e: &Element| {
+            let (x, y) = e.rect.centre();
+            let within = self.own.iter().any(|(row, _)| row.band.contains(x, y));
+            e.class == Class::Door || !(within || set.iter().any(|(s, ..)| clash(s, e)))
+        };
+        let wide = |e: &Element| e.class == Class::Balcony && !rows::is_single(self.observation, e);
+        added.retain(|(e, ..)| wide(e) || stays(e));
+        added.extend(set);
+        // The balconies of windows that are gone go with them.
+        let windows: Vec<Rect> = of(&self.observation.elements, Class::Window)
+            .chain(
+                added
+                    .iter()
+                    .map(|a| &a.0)
+                    .filter(|e| e.class == Class::Window),
+            )
+            .map(|e| e.rect)
+            .collect();
+        added.retain(|(e, ..)| {
+            !rows::is_single(self.observation, e) || windows.iter().any(|w| is_host(w, &e.rect))
+        });
     }
 
     /// The candidate of the highest value that is like an element, and its value.
@@ -164,7 +211,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The best coherent layout on a lattice with columns and rows at these places.
-    pub fn on_lattice(&self, lines: &[Vec<f64>; 2]) -> Layout {
+    pub(super) fn on_lattice(&self, lines: &[Vec<f64>; 2]) -> Layout {
         let near = |axis: Axis, lines: &[f64], at: f64| {
             let reach = ON_LINE * self.observation.extent(axis);
             let k = lines.partition_point(|&x| x < at - reach);
@@ -187,7 +234,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The coherent layout of the best candidates of all lattices.
-    pub fn freely(&self) -> Layout {
+    pub(super) fn freely(&self) -> Layout {
         self.coherent(&self.greedy(|_| true))
     }
 }

@@ -6,7 +6,7 @@
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
 //!    Without a mask it is weighed by what the seen lines say (`scattered`) and the seen windows without a balcony (`bare`).
 //! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
-//!    within their rows (`rows`) and the one door that is likely ([`doors`]).
+//!    within their rows (`rows`) and the one door that is likely ([`doors`]); rows with a `rhythm` of their own are continued.
 
 mod bare;
 mod belong;
@@ -17,13 +17,14 @@ pub mod density;
 pub mod doors;
 mod exact;
 pub mod fill;
-pub mod judge;
+mod judge;
 pub mod learn;
 pub mod masses;
 pub mod modes;
 pub mod observation;
 pub mod pool;
 mod regular;
+mod rhythm;
 mod rows;
 mod scattered;
 mod shared;
