@@ -7,7 +7,7 @@
 //!
 //! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
 //! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
-//! lines (`regular`), windows that then stand alone on a line are left out, and the balconies of each row are made even
+//! lines (`regular`), at the distance that windows keep ([`super::apart`]); windows that then stand alone on a line are left out, and the balconies of each row are made even
 //! (`rows`). The layout of the highest score is the one of least expected risk among those that were tried.
 //!
 //! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there.
@@ -15,6 +15,7 @@
 //! Doors are not chosen by their score. A facade that is seen without a door gets at most one, and that is asked beforehand
 //! ([`super::doors`]); one that shows a single door gets no other; one that shows several may get more.
 
+use super::apart::Apart;
 use super::belong::is_host;
 use super::by_place::ByPlace;
 use super::candidates::Candidates;
@@ -48,6 +49,7 @@ pub(super) struct Judge<'a> {
     observation: &'a Observation<'a>,
     candidates: &'a Candidates,
     value: Vec<f64>,
+    apart: Apart,
     /// Candidates by falling value.
     order: Vec<usize>,
     /// Least value of a window that is added.
@@ -79,6 +81,7 @@ impl<'a> Judge<'a> {
             observation,
             candidates,
             value,
+            apart: Apart::new(observation),
             order,
             least,
             door,
@@ -116,6 +119,9 @@ impl<'a> Judge<'a> {
             if second || improbable || !allowed(own) || taken.any_near(&own.rect, met) {
                 continue;
             }
+            if own.class == Class::Window && self.is_too_close(&own.rect, &taken) {
+                continue;
+            }
             let with = sum + self.value[c];
             let next = 2.0 * with / ((chosen.len() + 1) as f64 + self.expected.max(with));
             if next < score {
@@ -126,6 +132,13 @@ impl<'a> Judge<'a> {
             taken.push(*own);
         }
         chosen
+    }
+
+    /// True if a window would stand closer to an observed one or to one of these than windows do.
+    fn is_too_close(&self, window: &Rect, others: &ByPlace) -> bool {
+        let close = |o: &Element| o.class == Class::Window && self.apart.too_close(&o.rect, window);
+        let around = self.apart.around(window);
+        self.observation.elements.any_near(&around, close) || others.any_near(&around, close)
     }
 
     /// The coherent layout of some candidates.

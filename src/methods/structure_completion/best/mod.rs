@@ -8,6 +8,7 @@
 //! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
 //!    within their rows (`rows`) and the one door that is likely ([`doors`]); rows with a `rhythm` of their own are continued.
 
+mod apart;
 mod bare;
 mod belong;
 mod by_place;
