@@ -1,9 +1,9 @@
 //! The distance that windows keep: new ones do not stand closer to another window than half of the least gap seen.
 //!
 //! A gap along an axis is that of two windows which share at least half of the smaller one's extent along the other axis.
-//! Fewer than three gaps tell nothing.
+//! Fewer than three gaps tell nothing, nor do windows that are seen one by one: those between them may be hidden.
 
-use super::observation::{Observation, of};
+use super::observation::{Observation, SCATTERED, of};
 use crate::layout::Class;
 use edifice_shape::{Axis, Rect};
 
@@ -19,6 +19,9 @@ pub(super) struct Apart([f64; 2]);
 impl Apart {
     /// What the observed windows tell.
     pub(super) fn new(observation: &Observation) -> Self {
+        if observation.seen <= SCATTERED {
+            return Self([0.0; 2]);
+        }
         let seen: Vec<Rect> = of(&observation.elements, Class::Window)
             .map(|e| e.rect)
             .collect();

@@ -13,6 +13,9 @@ const OCCUPANCY: f64 = 0.9;
 /// seen in one region.
 const REGION: [f64; 2] = [0.65, 0.85];
 
+/// Up to this share of its cells a lattice may be seen element by element.
+pub(super) const SCATTERED: f64 = REGION[0];
+
 /// A partial layout with the lattice of its elements.
 #[derive(Debug, Clone)]
 pub struct Observation<'a> {
