@@ -17,7 +17,7 @@ const LEAST: usize = 3;
 pub(super) struct Apart([f64; 2]);
 
 impl Apart {
-    /// What the observed windows tell.
+    /// The gaps of the observed windows.
     pub(super) fn new(observation: &Observation) -> Self {
         if observation.seen <= SCATTERED {
             return Self([0.0; 2]);

@@ -56,7 +56,7 @@ pub(super) struct Judge<'a> {
     least: f64,
     /// The door that a facade without one gets.
     door: Option<usize>,
-    /// What rows with a rhythm of their own continue to, and the candidates of these elements.
+    /// Continuations of rows with a rhythm of their own, and the candidates of their elements.
     own: Vec<(Continued, Vec<usize>)>,
     expected: f64,
 }

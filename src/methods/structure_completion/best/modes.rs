@@ -124,7 +124,7 @@ pub fn complete(partial: &PartialLayout, model: &Model, count: usize, rng: &mut 
     }
 }
 
-/// What rows with a rhythm of their own continue to, as further candidates.
+/// Continuations of rows with a rhythm of their own, as further candidates.
 fn rows_of_own(
     observation: &Observation,
     candidates: &mut Candidates,
