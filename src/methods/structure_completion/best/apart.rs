@@ -1,7 +1,8 @@
 //! The distance that windows keep: new ones do not stand closer to another window than half of the least gap seen.
 //!
 //! A gap along an axis is that of two windows which share at least half of the smaller one's extent along the other axis.
-//! Fewer than three gaps tell nothing, nor do windows that are seen one by one: those between them may be hidden.
+//! Fewer than three gaps tell nothing, nor, without a mask, do windows that are seen one by one: those between them
+//! may be hidden.
 
 use super::observation::{Observation, SCATTERED, of};
 use crate::layout::Class;
@@ -19,7 +20,7 @@ pub(super) struct Apart([f64; 2]);
 impl Apart {
     /// The gaps of the observed windows.
     pub(super) fn new(observation: &Observation) -> Self {
-        if observation.seen <= SCATTERED {
+        if observation.partial.unknown.is_none() && observation.seen <= SCATTERED {
             return Self([0.0; 2]);
         }
         let seen: Vec<Rect> = of(&observation.elements, Class::Window)

@@ -159,7 +159,7 @@ impl Row {
         });
         self.class == Class::Shop
             || wide.max(typical) > OTHER_SIZE * wide.min(typical)
-            || 2 * off.count() > self.members.len()
+            || 3 * off.count() > self.members.len()
     }
 
     /// The element of the row with this centre.
