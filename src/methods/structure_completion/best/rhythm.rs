@@ -7,7 +7,8 @@
 //! - It is seen alone at its height: no other window and no other shop of more than half its height has its centre there.
 //! - Sizes and distances of a row are even up to 0.12 and 0.1 of themselves; distances may be multiples of the smallest.
 //! - No further element of its size would fit between two of them. Where three or more are even up to 0.02, it may be: nobody builds that by chance.
-//! - At its free end a row keeps half the margin of its seen end, at most half of the wall between two of its elements.
+//! - More than a third of its elements stand off the columns of the other rows, or its width is not theirs; shops have no columns.
+//! - At its free end a row keeps half the margin of its seen end, at most half of a wall between two of its elements and a quarter of a width.
 //! - Where a door in the middle of the facade ends it, the mirror images of what is seen of it stand beyond the door.
 
 use super::observation::{Observation, of};
