@@ -173,7 +173,7 @@ fn shipped_layouts_are_completed_on_lines() {
                     let (_, y) = window.rect.centre();
                     let in_row =
                         |e: &&Element| (e.rect.centre().1 - y).abs() < 0.25 * e.rect.height;
-                    amiss += usize::from(!true_off.iter().any(|e| in_row(e)));
+                    amiss += usize::from(!true_off.iter().any(in_row));
                 }
             }
             hidden += truth.iter().filter(is_window).count();
