@@ -9,7 +9,7 @@
 //! # The default method, [`best`]
 //! It answers with whole layouts on shared lines. Let `p_i` be the probability that a hidden element matches candidate
 //! `i`, half at an intersection over union of 0.5 and half at 0.75. Among coherent layouts the one with the highest expected
-//! score `2 sum p_i / (|S| + E[n])` is chosen ([`best::judge`]). Candidates and `p_i` come from:
+//! score `2 sum p_i / (|S| + E[n])` is chosen (`best::judge`). Candidates and `p_i` come from:
 //!
 //! 1. exact draws of the columns and rows of the lattice, by a chain over (position, previous gap) whose every
 //!    factor is normalized over the positions ([`best::chain`]);
