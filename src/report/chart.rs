@@ -224,3 +224,16 @@ impl Series {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_abscissas_of_a_chart_are_those_of_its_points_and_bands() {
+        let line = Series::line("a", vec![(10.0, 1.0), (20.0, 2.0)]);
+        let chart = Chart::new("title", Scale::new("x"), Scale::new("y"))
+            .series(line.band(vec![(5.0, 0.0, 1.0)]));
+        assert_eq!(chart.xs().collect::<Vec<f64>>(), [10.0, 20.0, 5.0]);
+    }
+}
