@@ -193,6 +193,70 @@ fn shipped_layouts_are_completed_on_lines() {
     );
 }
 
+/// The gap between two windows that stand beside or above each other over at least half of the smaller one; `None` for others.
+fn gaps(a: &Rect, b: &Rect) -> [Option<f64>; 2] {
+    let x = a.x.max(b.x) - a.right().min(b.right());
+    let y = a.y.max(b.y) - a.top().min(b.top());
+    [
+        (-y >= 0.5 * a.height.min(b.height)).then_some(x),
+        (-x >= 0.5 * a.width.min(b.width)).then_some(y),
+    ]
+}
+
+/// Where a mask says what is hidden, no new window is closer to another one than half of the least of three or more gaps seen.
+#[test]
+fn windows_keep_their_distance() {
+    let model = shipped_model().expect("the shipped model");
+    let (mut asked, mut answers) = (0, 0);
+    for (k, layout) in model.layouts().into_iter().enumerate() {
+        for task in Task::ALL {
+            let mut rng = stream(11, task.name(), k as u64);
+            let (partial, _) = task.hide(&layout, &mut rng);
+            if partial.unknown.is_none() {
+                continue;
+            }
+            let seen: Vec<Rect> = partial.of(Class::Window).map(|w| w.rect).collect();
+            let mut least = [(0, f64::INFINITY); 2];
+            for (i, a) in seen.iter().enumerate() {
+                for (found, gap) in seen[..i]
+                    .iter()
+                    .flat_map(|b| [0, 1].into_iter().zip(gaps(a, b)))
+                {
+                    if let Some(gap) = gap {
+                        least[found] = (least[found].0 + 1, least[found].1.min(gap));
+                    }
+                }
+            }
+            for answer in complete(Method::Best, &partial, &model, 3, &mut rng) {
+                answers += 1;
+                let new = added(&answer);
+                let new = new.iter().filter(|e| e.class == Class::Window);
+                let mut others = seen.clone();
+                for window in new {
+                    for other in &others {
+                        for (gap, (count, least)) in
+                            gaps(&window.rect, other).into_iter().zip(least)
+                        {
+                            if let Some(gap) = gap.filter(|_| count >= 3 && least > 0.0) {
+                                asked += 1;
+                                let slack = 1e-9 * partial.width;
+                                assert!(
+                                    gap >= 0.5 * least - slack,
+                                    "{}, {task:?}: {gap}",
+                                    layout.name
+                                );
+                            }
+                        }
+                    }
+                    others.push(window.rect);
+                }
+            }
+        }
+    }
+    println!("{answers} answers, {asked} gaps");
+    assert!(answers > 500 && asked > 50_000);
+}
+
 #[test]
 fn a_facade_gets_one_door_and_no_second_beside_a_seen_one() {
     let model = shipped_model().expect("the shipped model");

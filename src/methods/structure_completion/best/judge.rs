@@ -7,8 +7,8 @@
 //!
 //! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
 //! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
-//! lines (`regular`), at the distance that windows keep ([`super::apart`]); windows that then stand alone on a line are left out, and the balconies of each row are made even
-//! (`rows`). The layout of the highest score is the one of least expected risk among those that were tried.
+//! lines (`regular`), windows that then stand alone on a line are left out, the balconies of each row are made even (`rows`), and
+//! windows that are closer to others than windows are ([`super::apart`]) are left out. The layout of the highest score is the one of least expected risk among those that were tried.
 //!
 //! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there.
 //!
@@ -168,7 +168,9 @@ impl<'a> Judge<'a> {
             let kept = whole(&added).added.into_iter();
             added = kept.map(|(e, r, k)| (e, r, added[k].2)).collect();
         }
+        self.keep_apart(&mut added);
         self.continue_rows(&mut added);
+        self.without_orphans(&mut added);
         let seen = &self.observation.partial.observed;
         Layout {
             score: self.score(added.iter().map(|a| a.2)),
@@ -179,9 +181,6 @@ impl<'a> Judge<'a> {
 
     /// Puts what rows with a rhythm of their own continue to in the place of what is there, doors aside.
     fn continue_rows(&self, added: &mut Vec<(Element, Reason, usize)>) {
-        if self.own.is_empty() {
-            return;
-        }
         let doors: Vec<Element> = (added.iter().map(|a| a.0))
             .filter(|e| e.class == Class::Door)
             .collect();
@@ -198,16 +197,28 @@ impl<'a> Judge<'a> {
         let wide = |e: &Element| e.class == Class::Balcony && !rows::is_single(self.observation, e);
         added.retain(|(e, ..)| wide(e) || stays(e));
         added.extend(set);
-        // The balconies of windows that are gone go with them.
-        let windows: Vec<Rect> = of(&self.observation.elements, Class::Window)
-            .chain(
-                added
-                    .iter()
-                    .map(|a| &a.0)
-                    .filter(|e| e.class == Class::Window),
-            )
-            .map(|e| e.rect)
-            .collect();
+    }
+
+    /// Leaves out windows that shared lines brought too close to observed ones or to those before them.
+    fn keep_apart(&self, added: &mut Vec<(Element, Reason, usize)>) {
+        let partial = self.observation.partial;
+        let facade = [partial.width, partial.height];
+        let mut kept = ByPlace::new(facade, self.observation.size, added.len());
+        added.retain(|(e, ..)| {
+            let stays = e.class != Class::Window || !self.is_too_close(&e.rect, &kept);
+            if stays {
+                kept.push(*e);
+            }
+            stays
+        });
+    }
+
+    /// The balconies of windows that are gone go with them.
+    fn without_orphans(&self, added: &mut Vec<(Element, Reason, usize)>) {
+        let is_window = |e: &&Element| e.class == Class::Window;
+        let all = self.observation.elements.iter();
+        let all = all.chain(added.iter().map(|a| &a.0)).filter(is_window);
+        let windows: Vec<Rect> = all.map(|e| e.rect).collect();
         added.retain(|(e, ..)| {
             !rows::is_single(self.observation, e) || windows.iter().any(|w| is_host(w, &e.rect))
         });
