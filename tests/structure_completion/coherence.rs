@@ -203,7 +203,7 @@ fn gaps(a: &Rect, b: &Rect) -> [Option<f64>; 2] {
     ]
 }
 
-/// Where a mask says what is hidden, no new window is closer to another one than half of the least of three or more gaps seen.
+/// With a mask, no new window is closer to another one than half of the least of three or more gaps seen.
 #[test]
 fn windows_keep_their_distance() {
     let model = shipped_model().expect("the shipped model");
