@@ -10,7 +10,9 @@
 //! lines (`regular`), windows that then stand alone on a line are left out, the balconies of each row are made even (`rows`), and
 //! windows that are closer to others than windows are ([`super::apart`]) are left out. The layout of the highest score is the one of least expected risk among those that were tried.
 //!
-//! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there.
+//! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there. Last, a ground floor that
+//! is left empty is filled ([`super::ground`]). That does not count for the score: single elements of a ground floor are too uncertain to
+//! pay, but a building has one.
 //!
 //! Doors are not chosen by their score. A facade that is seen without a door gets at most one, and that is asked beforehand
 //! ([`super::doors`]); one that shows a single door gets no other; one that shows several may get more.
@@ -19,6 +21,7 @@ use super::apart::Apart;
 use super::belong::is_host;
 use super::by_place::ByPlace;
 use super::candidates::Candidates;
+use super::ground::Ground;
 use super::observation::{Observation, of};
 use super::regular::{clash, regular, without_loners};
 use super::rhythm::Continued;
@@ -38,7 +41,7 @@ const SAME: f64 = 0.3;
 pub(super) struct Layout {
     /// Added elements, those of one class by falling probability but for balconies.
     pub added: Vec<(Element, Reason, usize)>,
-    /// Expected score, 0 to 1.
+    /// Expected score without what fills an empty ground floor, 0 to 1.
     pub score: f64,
     /// Columns and rows of its windows and the seen ones, counted as those of an annotation are ([`numbers`]).
     pub numbers: (usize, usize),
@@ -171,9 +174,11 @@ impl<'a> Judge<'a> {
         self.keep_apart(&mut added);
         self.continue_rows(&mut added);
         self.without_orphans(&mut added);
+        let score = self.score(added.iter().map(|a| a.2));
+        self.fill_ground(&mut added);
         let seen = &self.observation.partial.observed;
         Layout {
-            score: self.score(added.iter().map(|a| a.2)),
+            score,
             numbers: numbers(seen.iter().chain(added.iter().map(|a| &a.0))),
             added,
         }
@@ -211,6 +216,17 @@ impl<'a> Judge<'a> {
             }
             stays
         });
+    }
+
+    /// Adds what stands on a ground floor that is left empty.
+    fn fill_ground(&self, added: &mut Vec<(Element, Reason, usize)>) {
+        let all = &self.candidates.all;
+        let ground = Ground {
+            observation: self.observation,
+            apart: &self.apart,
+        };
+        let templates = self.order.iter().map(|&c| (c, &all[c].element));
+        ground.fill(added, templates, |e| self.like(e));
     }
 
     /// The balconies of windows that are gone go with them.

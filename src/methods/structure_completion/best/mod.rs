@@ -6,7 +6,8 @@
 //! 3. [`learn`]: the probability of a candidate, by boosted trees learnt on the database with parts hidden.
 //!    Without a mask it is weighed by what the seen lines say (`scattered`) and the seen windows without a balcony (`bare`).
 //! 4. `judge`: the whole layout of the pool with the largest expected F1 at .5 and .75, with balconies that are even
-//!    within their rows (`rows`) and the one door that is likely ([`doors`]); rows with a `rhythm` of their own are continued.
+//!    within their rows (`rows`) and the one door that is likely ([`doors`]); rows with a `rhythm` of their own are continued,
+//!    an empty `ground` floor is filled.
 
 mod apart;
 mod bare;
@@ -18,6 +19,7 @@ pub mod density;
 pub mod doors;
 mod exact;
 pub mod fill;
+mod ground;
 mod judge;
 pub mod learn;
 pub mod masses;

@@ -1,0 +1,268 @@
+//! The ground floor that a layout leaves empty.
+//!
+//! A ground floor is empty where nothing but a new door stands at the height of that door, or, without a door, where the lowest
+//! element of all, balconies aside, stands higher than one storey is from the next. Both are rare in whole facades: of the doors of CMP
+//! 8 in 100 stand alone. Below the windows of the row above, windows or shops are then added, one each, where
+//! nothing is known and the door leaves room. All have one height and one lower edge, those of the candidate under which
+//! the sum of the values of the candidates that are like them is largest.
+
+use super::apart::Apart;
+use super::fill::typical_gap;
+use super::observation::Observation;
+use super::regular::clash;
+use crate::completion::Reason;
+use crate::layout::lines::median;
+use crate::layout::{Class, Element};
+use edifice_shape::Rect;
+
+/// An element stands beside a door if it reaches over this share of the smaller height.
+const BESIDE: f64 = 0.3;
+/// Widest shop below a window, in distances of windows.
+const WIDEST: f64 = 0.85;
+/// Distance to the door, in widths of the door.
+const FROM_DOOR: f64 = 0.1;
+/// An element is at most this much higher than the window above it.
+const HIGHER: f64 = 1.5;
+/// Most empty storeys that are filled.
+const STOREYS: usize = 3;
+/// Most candidates that are tried as the row's height and lower edge.
+const TRIED: usize = 30;
+
+/// An added element, why, and the candidate that stands for it.
+type Added = (Element, Reason, usize);
+
+/// The facade that is completed, and the rules for its ground floor.
+pub(super) struct Ground<'a> {
+    /// The facade.
+    pub observation: &'a Observation<'a>,
+    /// The distance that windows keep.
+    pub apart: &'a Apart,
+}
+
+impl Ground<'_> {
+    /// Adds what stands on an empty ground floor; `templates` are candidates by falling value, `like` gives the candidate
+    /// of the highest value that is like an element, and its value.
+    pub(super) fn fill<'t>(
+        &self,
+        added: &mut Vec<Added>,
+        templates: impl Iterator<Item = (usize, &'t Element)> + Clone,
+        like: impl Fn(&Element) -> Option<(usize, f64)>,
+    ) {
+        for _ in 0..STOREYS {
+            let seen = self.observation.elements.iter().copied();
+            let all: Vec<Element> = seen.chain(added.iter().map(|a| a.0)).collect();
+            let door = added.iter().find(|a| a.0.class == Class::Door);
+            let door = door.map(|a| a.0.rect);
+            let Some((height, bays)) = self.empty(&all, door) else {
+                return;
+            };
+            let Some(bottom) = bays.iter().map(|b| b.y).reduce(f64::min) else {
+                return;
+            };
+            let highest = HIGHER * bays[0].height;
+            let fits = |e: &Element| {
+                let is_lower = e.rect.top() < bottom && e.rect.height <= highest;
+                is_front(e) && is_lower && stands_at(&e.rect, height)
+            };
+            let fitting = templates.clone().filter(|(_, e)| fits(e)).take(TRIED);
+            let mut best: (f64, Vec<Added>) = (0.0, Vec::new());
+            for (template, element) in fitting {
+                let row = self.row(&all, &bays, door, element);
+                let own = row.into_iter().map(|e| (e, like(&e)));
+                let row: Vec<(Element, Option<(usize, f64)>)> = own.collect();
+                let sum: f64 = row.iter().filter_map(|(_, l)| Some((*l)?.1)).sum();
+                if sum > best.0 {
+                    let stands_for = |l: Option<(usize, f64)>| l.map_or(template, |l| l.0);
+                    let row = row.into_iter();
+                    let row = row.map(|(e, l)| (e, Reason::Lattice, stands_for(l)));
+                    best = (sum, row.collect());
+                }
+            }
+            if best.1.is_empty() {
+                return;
+            }
+            added.extend(best.1);
+        }
+    }
+
+    /// Height of an empty ground floor, and the windows of the row above it from left to right; `None` where it is not empty.
+    fn empty(&self, all: &[Element], door: Option<Rect>) -> Option<(f64, Vec<Rect>)> {
+        let fronts = || all.iter().filter(|e| is_front(e)).map(|e| e.rect);
+        match door {
+            Some(door) => {
+                let alone = !fronts().any(|r| stands_at(&r, door.top()));
+                alone.then(|| (door.top(), lowest_row(all, door.top())))
+            }
+            None => {
+                let standing = all.iter().filter(|e| e.class != Class::Balcony);
+                let lowest = standing.map(|e| e.rect.y).reduce(f64::min)?;
+                let storey = typical_gap(&self.observation.rows)?;
+                (lowest > storey).then(|| (lowest, lowest_row(all, 0.0)))
+            }
+        }
+    }
+
+    /// The elements of a row at the height of one of them, below windows, where they have room.
+    fn row(
+        &self,
+        all: &[Element],
+        bays: &[Rect],
+        door: Option<Rect>,
+        template: &Element,
+    ) -> Vec<Element> {
+        let distances = bays.windows(2).map(|w| w[1].centre().0 - w[0].centre().0);
+        let distance = median(distances).unwrap_or(2.0 * bays[0].width);
+        let too_close = |e: &Element, rect: &Rect| {
+            e.class == Class::Window && self.apart.too_close(&e.rect, rect)
+        };
+        let before = door.map(|d| {
+            let reach = FROM_DOOR * d.width;
+            Rect::new(d.x - reach, 0.0, d.width + 2.0 * reach, d.top())
+        });
+        let below = bays.iter().map(|bay| {
+            let width = match template.class {
+                Class::Shop => template.rect.width.min(WIDEST * distance),
+                _ => bay.width,
+            };
+            let x = bay.centre().0 - width / 2.0;
+            let rect = Rect::new(x, template.rect.y, width, template.rect.height);
+            Element::new(template.class, rect)
+        });
+        let mut row: Vec<Element> = Vec::new();
+        for element in below {
+            let free = self.observation.partial.has_room(&element)
+                && before.is_none_or(|b| b.overlap(&element.rect) <= 0.0)
+                && !(all.iter().chain(&row))
+                    .any(|o| clash(o, &element) || too_close(o, &element.rect));
+            row.extend(free.then_some(element));
+        }
+        row
+    }
+}
+
+/// True for a window or a shop.
+fn is_front(element: &Element) -> bool {
+    matches!(element.class, Class::Window | Class::Shop)
+}
+
+/// True if an element stands on a ground floor of that height.
+fn stands_at(r: &Rect, height: f64) -> bool {
+    r.top().min(height) - r.y.max(0.0) > BESIDE * r.height.min(height)
+}
+
+/// The windows of the lowest row whose centres lie above a height, from left to right.
+fn lowest_row(all: &[Element], height: f64) -> Vec<Rect> {
+    let windows = all.iter().filter(|e| e.class == Class::Window);
+    let mut row: Vec<Rect> = windows
+        .map(|e| e.rect)
+        .filter(|r| r.centre().1 > height)
+        .collect();
+    row.sort_by(|a, b| a.centre().1.total_cmp(&b.centre().1));
+    let top = row.first().map_or(0.0, |lowest| lowest.top());
+    row.retain(|r| r.centre().1 < top);
+    row.sort_by(|a, b| a.x.total_cmp(&b.x));
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::partial::PartialLayout;
+
+    const TEMPLATES: [Element; 3] = [
+        Element {
+            class: Class::Window,
+            rect: Rect {
+                x: 10.0,
+                y: 8.0,
+                width: 12.0,
+                height: 22.0,
+            },
+        },
+        Element {
+            class: Class::Shop,
+            rect: Rect {
+                x: 35.0,
+                y: 2.0,
+                width: 40.0,
+                height: 28.0,
+            },
+        },
+        // Too high for a ground floor below windows of 20.
+        Element {
+            class: Class::Window,
+            rect: Rect {
+                x: 10.0,
+                y: 2.0,
+                width: 12.0,
+                height: 34.0,
+            },
+        },
+    ];
+
+    /// The elements that are added below two rows of four windows, 30 apart but for `shift` of the third column, seen above `edge`, where
+    /// elements of a class are worth that much.
+    fn filled(door: Option<Rect>, shift: f64, edge: f64, worth: [f64; 2]) -> Vec<Element> {
+        let windows = (0..8).map(|k| {
+            let column = k % 4;
+            let x = 10.0 + 30.0 * f64::from(column) + if column == 2 { shift } else { 0.0 };
+            let rect = Rect::new(x, 50.0 + 35.0 * f64::from(k / 4), 12.0, 20.0);
+            Element::new(Class::Window, rect)
+        });
+        let observed: Vec<Element> = windows.collect();
+        let partial = PartialLayout {
+            width: 122.0,
+            height: 120.0,
+            observed: observed.clone(),
+            unknown: Some(vec![Rect::new(0.0, 0.0, 122.0, edge)]),
+            forbidden: Vec::new(),
+        };
+        let observation = Observation::new(&partial, observed, (12.0, 20.0));
+        let ground = Ground {
+            observation: &observation,
+            apart: &Apart::new(&observation),
+        };
+        let door = door.map(|d| (Element::new(Class::Door, d), Reason::Database, 9));
+        let mut added: Vec<Added> = door.into_iter().collect();
+        let before = added.len();
+        ground.fill(&mut added, TEMPLATES.iter().enumerate(), |e| {
+            let windows = e.class == Class::Window;
+            Some((7, worth[usize::from(!windows)]))
+        });
+        added[before..].iter().map(|a| a.0).collect()
+    }
+
+    #[test]
+    fn windows_stand_beside_a_door_in_the_columns_above() {
+        let door = Some(Rect::new(38.0, 0.0, 16.0, 30.0));
+        let row = filled(door, 0.0, 48.0, [0.3, 0.1]);
+        let at: Vec<f64> = row.iter().map(|e| e.rect.x).collect();
+        assert_eq!(at, [10.0, 70.0, 100.0]);
+        let alike = |e: &Element| (e.class, e.rect.y, e.rect.height) == (Class::Window, 8.0, 22.0);
+        assert!(row.iter().all(alike));
+    }
+
+    #[test]
+    fn shops_are_no_wider_than_there_is_room() {
+        let row = filled(None, 0.0, 48.0, [0.1, 0.3]);
+        assert_eq!(row.len(), 4);
+        assert!(
+            row.iter()
+                .all(|e| e.class == Class::Shop && e.rect.width == WIDEST * 30.0)
+        );
+        // The third column stands nearer to the fourth than a shop is wide.
+        let uneven = filled(None, 10.0, 48.0, [0.1, 0.3]);
+        assert_eq!(uneven.len(), 3);
+    }
+
+    #[test]
+    fn a_ground_floor_that_is_not_empty_or_not_hidden_stays() {
+        // A wide door reaches up to the windows: they stand beside it.
+        let beside_windows = Some(Rect::new(38.0, 0.0, 16.0, 64.0));
+        assert!(filled(beside_windows, 0.0, 48.0, [0.3, 0.1]).is_empty());
+        // The centres of all templates lie on known wall.
+        assert!(filled(None, 0.0, 10.0, [0.3, 0.1]).is_empty());
+        // No candidate is worth anything.
+        assert!(filled(None, 0.0, 48.0, [0.0, 0.0]).is_empty());
+    }
+}
