@@ -3,8 +3,8 @@
 //! A ground floor is empty where nothing but a new door stands at the height of that door, or, without a door, where the lowest
 //! element of all, balconies aside, stands higher than one storey is from the next. Both are rare in whole facades: of the doors of CMP
 //! 8 in 100 stand alone. Below the windows of the row above, windows or shops are then added, one each, where
-//! nothing is known and the door leaves room. All have one height and one lower edge, those of the candidate under which
-//! the sum of the values of the candidates that are like them is largest.
+//! nothing is known and the door leaves room; shops too wide for that stand where candidates have them. All have one height and
+//! one lower edge, those of the candidate under which the sum of the values of the candidates that are like them is largest.
 
 use super::apart::Apart;
 use super::fill::typical_gap;
@@ -17,11 +17,13 @@ use edifice_shape::Rect;
 
 /// An element stands beside a door if it reaches over this share of the smaller height.
 const BESIDE: f64 = 0.3;
+/// Shops of one row have this share of the higher one's height in common.
+const LEVEL: f64 = 0.8;
 /// Widest shop below a window, in distances of windows.
 const WIDEST: f64 = 0.85;
 /// Distance to the door, in widths of the door.
 const FROM_DOOR: f64 = 0.1;
-/// An element is at most this much higher than the window above it.
+/// A window is at most this much higher than the one above it.
 const HIGHER: f64 = 1.5;
 /// Most empty storeys that are filled.
 const STOREYS: usize = 3;
@@ -59,15 +61,15 @@ impl Ground<'_> {
             let Some(bottom) = bays.iter().map(|b| b.y).reduce(f64::min) else {
                 return;
             };
-            let highest = HIGHER * bays[0].height;
             let fits = |e: &Element| {
-                let is_lower = e.rect.top() < bottom && e.rect.height <= highest;
-                is_front(e) && is_lower && stands_at(&e.rect, height)
+                let higher = e.class == Class::Window && e.rect.height > HIGHER * bays[0].height;
+                is_front(e) && !higher && e.rect.top() < bottom && stands_at(&e.rect, height)
             };
             let fitting = templates.clone().filter(|(_, e)| fits(e)).take(TRIED);
+            let fitting: Vec<(usize, &Element)> = fitting.collect();
             let mut best: (f64, Vec<Added>) = (0.0, Vec::new());
-            for (template, element) in fitting {
-                let row = self.row(&all, &bays, door, element);
+            for &(template, element) in &fitting {
+                let row = self.standing(&all, door, &places(element, &bays, &fitting));
                 let own = row.into_iter().map(|e| (e, like(&e)));
                 let row: Vec<(Element, Option<(usize, f64)>)> = own.collect();
                 let sum: f64 = row.iter().filter_map(|(_, l)| Some((*l)?.1)).sum();
@@ -102,16 +104,8 @@ impl Ground<'_> {
         }
     }
 
-    /// The elements of a row at the height of one of them, below windows, where they have room.
-    fn row(
-        &self,
-        all: &[Element],
-        bays: &[Rect],
-        door: Option<Rect>,
-        template: &Element,
-    ) -> Vec<Element> {
-        let distances = bays.windows(2).map(|w| w[1].centre().0 - w[0].centre().0);
-        let distance = median(distances).unwrap_or(2.0 * bays[0].width);
+    /// Those of some places that have room, beside those before them.
+    fn standing(&self, all: &[Element], door: Option<Rect>, places: &[Element]) -> Vec<Element> {
         let too_close = |e: &Element, rect: &Rect| {
             e.class == Class::Window && self.apart.too_close(&e.rect, rect)
         };
@@ -119,17 +113,8 @@ impl Ground<'_> {
             let reach = FROM_DOOR * d.width;
             Rect::new(d.x - reach, 0.0, d.width + 2.0 * reach, d.top())
         });
-        let below = bays.iter().map(|bay| {
-            let width = match template.class {
-                Class::Shop => template.rect.width.min(WIDEST * distance),
-                _ => bay.width,
-            };
-            let x = bay.centre().0 - width / 2.0;
-            let rect = Rect::new(x, template.rect.y, width, template.rect.height);
-            Element::new(template.class, rect)
-        });
         let mut row: Vec<Element> = Vec::new();
-        for element in below {
+        for &element in places {
             let free = self.observation.partial.has_room(&element)
                 && before.is_none_or(|b| b.overlap(&element.rect) <= 0.0)
                 && !(all.iter().chain(&row))
@@ -138,6 +123,37 @@ impl Ground<'_> {
         }
         row
     }
+}
+
+/// The places of a row like one of the fitting candidates: below windows, or, of shops too wide for that, where candidates have them.
+fn places(template: &Element, bays: &[Rect], fitting: &[(usize, &Element)]) -> Vec<Element> {
+    let (y, height) = (template.rect.y, template.rect.height);
+    let element = |x: f64, width: f64| {
+        let rect = Rect::new(x - width / 2.0, y, width, height);
+        Element::new(template.class, rect)
+    };
+    let distances = bays.windows(2).map(|w| w[1].centre().0 - w[0].centre().0);
+    let distance = median(distances).unwrap_or(2.0 * bays[0].width);
+    if template.class == Class::Window || template.rect.width <= WIDEST * distance {
+        let width = |bay: &Rect| match template.class {
+            Class::Window => bay.width,
+            _ => template.rect.width,
+        };
+        return bays
+            .iter()
+            .map(|bay| element(bay.centre().0, width(bay)))
+            .collect();
+    }
+    let level = |r: &Rect| {
+        let common = r.top().min(y + height) - r.y.max(y);
+        common > LEVEL * r.height.max(height)
+    };
+    let others = fitting.iter().map(|(_, e)| *e);
+    let others = others.filter(|e| e.class == template.class && level(&e.rect));
+    std::iter::once(template)
+        .chain(others)
+        .map(|e| element(e.rect.centre().0, e.rect.width))
+        .collect()
 }
 
 /// True for a window or a shop.
@@ -169,7 +185,7 @@ mod tests {
     use super::*;
     use crate::partial::PartialLayout;
 
-    const TEMPLATES: [Element; 3] = [
+    const TEMPLATES: [Element; 5] = [
         Element {
             class: Class::Window,
             rect: Rect {
@@ -188,6 +204,24 @@ mod tests {
                 height: 28.0,
             },
         },
+        Element {
+            class: Class::Shop,
+            rect: Rect {
+                x: 60.0,
+                y: 2.0,
+                width: 40.0,
+                height: 28.0,
+            },
+        },
+        Element {
+            class: Class::Shop,
+            rect: Rect {
+                x: 80.0,
+                y: 3.0,
+                width: 38.0,
+                height: 28.0,
+            },
+        },
         // Too high for a ground floor below windows of 20.
         Element {
             class: Class::Window,
@@ -200,12 +234,12 @@ mod tests {
         },
     ];
 
-    /// The elements that are added below two rows of four windows, 30 apart but for `shift` of the third column, seen above `edge`, where
-    /// elements of a class are worth that much.
-    fn filled(door: Option<Rect>, shift: f64, edge: f64, worth: [f64; 2]) -> Vec<Element> {
+    /// The elements that are added below two rows of four windows, 30 apart, seen above `edge`, where elements of a class are
+    /// worth that much.
+    fn filled(door: Option<Rect>, edge: f64, worth: [f64; 2]) -> Vec<Element> {
         let windows = (0..8).map(|k| {
             let column = k % 4;
-            let x = 10.0 + 30.0 * f64::from(column) + if column == 2 { shift } else { 0.0 };
+            let x = 10.0 + 30.0 * f64::from(column);
             let rect = Rect::new(x, 50.0 + 35.0 * f64::from(k / 4), 12.0, 20.0);
             Element::new(Class::Window, rect)
         });
@@ -235,7 +269,7 @@ mod tests {
     #[test]
     fn windows_stand_beside_a_door_in_the_columns_above() {
         let door = Some(Rect::new(38.0, 0.0, 16.0, 30.0));
-        let row = filled(door, 0.0, 48.0, [0.3, 0.1]);
+        let row = filled(door, 48.0, [0.3, 0.1]);
         let at: Vec<f64> = row.iter().map(|e| e.rect.x).collect();
         assert_eq!(at, [10.0, 70.0, 100.0]);
         let alike = |e: &Element| (e.class, e.rect.y, e.rect.height) == (Class::Window, 8.0, 22.0);
@@ -243,26 +277,22 @@ mod tests {
     }
 
     #[test]
-    fn shops_are_no_wider_than_there_is_room() {
-        let row = filled(None, 0.0, 48.0, [0.1, 0.3]);
-        assert_eq!(row.len(), 4);
-        assert!(
-            row.iter()
-                .all(|e| e.class == Class::Shop && e.rect.width == WIDEST * 30.0)
-        );
-        // The third column stands nearer to the fourth than a shop is wide.
-        let uneven = filled(None, 10.0, 48.0, [0.1, 0.3]);
-        assert_eq!(uneven.len(), 3);
+    fn wide_shops_stand_where_candidates_have_them() {
+        let row = filled(None, 48.0, [0.1, 0.5]);
+        let at: Vec<(f64, f64)> = row.iter().map(|e| (e.rect.x, e.rect.width)).collect();
+        // The third candidate of 40 overlaps the first.
+        assert_eq!(at, [(35.0, 40.0), (80.0, 38.0)]);
+        assert!(row.iter().all(|e| (e.rect.y, e.rect.height) == (2.0, 28.0)));
     }
 
     #[test]
     fn a_ground_floor_that_is_not_empty_or_not_hidden_stays() {
         // A wide door reaches up to the windows: they stand beside it.
         let beside_windows = Some(Rect::new(38.0, 0.0, 16.0, 64.0));
-        assert!(filled(beside_windows, 0.0, 48.0, [0.3, 0.1]).is_empty());
+        assert!(filled(beside_windows, 48.0, [0.3, 0.1]).is_empty());
         // The centres of all templates lie on known wall.
-        assert!(filled(None, 0.0, 10.0, [0.3, 0.1]).is_empty());
+        assert!(filled(None, 10.0, [0.3, 0.1]).is_empty());
         // No candidate is worth anything.
-        assert!(filled(None, 0.0, 48.0, [0.0, 0.0]).is_empty());
+        assert!(filled(None, 48.0, [0.0, 0.0]).is_empty());
     }
 }
