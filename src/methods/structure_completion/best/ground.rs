@@ -3,7 +3,7 @@
 //! A ground floor is empty where nothing but a new door stands at the height of that door, or, without a door, where the lowest
 //! element of all, balconies aside, stands higher than one storey is from the next. Both are rare in whole facades: of the doors of CMP
 //! 8 in 100 stand alone. Below the windows of the row above, windows or shops are then added, one each, where
-//! nothing is known and the door leaves room; shops too wide for that stand where candidates have them. All have one height and
+//! nothing is known and the door leaves room; shops too wide for that stand two or more columns apart. All have one height and
 //! one lower edge, those of the candidate under which the sum of the values of the candidates that are like them is largest.
 
 use super::apart::Apart;
@@ -17,8 +17,10 @@ use edifice_shape::Rect;
 
 /// An element stands beside a door if it reaches over this share of the smaller height.
 const BESIDE: f64 = 0.3;
-/// Shops of one row have this share of the higher one's height in common.
-const LEVEL: f64 = 0.8;
+/// Most shops on each side of the first one.
+const MOST: f64 = 100.0;
+/// An element stays this share of the height of the windows above it below them.
+const BELOW: f64 = 0.15;
 /// Widest shop below a window, in distances of windows.
 const WIDEST: f64 = 0.85;
 /// Distance to the door, in widths of the door.
@@ -61,15 +63,16 @@ impl Ground<'_> {
             let Some(bottom) = bays.iter().map(|b| b.y).reduce(f64::min) else {
                 return;
             };
+            let below = bottom - BELOW * bays[0].height;
             let fits = |e: &Element| {
                 let higher = e.class == Class::Window && e.rect.height > HIGHER * bays[0].height;
-                is_front(e) && !higher && e.rect.top() < bottom && stands_at(&e.rect, height)
+                is_front(e) && !higher && e.rect.top() < below && stands_at(&e.rect, height)
             };
             let fitting = templates.clone().filter(|(_, e)| fits(e)).take(TRIED);
-            let fitting: Vec<(usize, &Element)> = fitting.collect();
+            let width = self.observation.partial.width;
             let mut best: (f64, Vec<Added>) = (0.0, Vec::new());
-            for &(template, element) in &fitting {
-                let row = self.standing(&all, door, &places(element, &bays, &fitting));
+            for (template, element) in fitting {
+                let row = self.standing(&all, door, &places(element, &bays, width));
                 let own = row.into_iter().map(|e| (e, like(&e)));
                 let row: Vec<(Element, Option<(usize, f64)>)> = own.collect();
                 let sum: f64 = row.iter().filter_map(|(_, l)| Some((*l)?.1)).sum();
@@ -125,8 +128,9 @@ impl Ground<'_> {
     }
 }
 
-/// The places of a row like one of the fitting candidates: below windows, or, of shops too wide for that, where candidates have them.
-fn places(template: &Element, bays: &[Rect], fitting: &[(usize, &Element)]) -> Vec<Element> {
+/// The places of a row like one of the candidates: below windows, or, of shops too wide for that, on both sides of the candidate, as many
+/// distances of windows apart as a shop needs. `length` is the width of the facade.
+fn places(template: &Element, bays: &[Rect], length: f64) -> Vec<Element> {
     let (y, height) = (template.rect.y, template.rect.height);
     let element = |x: f64, width: f64| {
         let rect = Rect::new(x - width / 2.0, y, width, height);
@@ -144,15 +148,11 @@ fn places(template: &Element, bays: &[Rect], fitting: &[(usize, &Element)]) -> V
             .map(|bay| element(bay.centre().0, width(bay)))
             .collect();
     }
-    let level = |r: &Rect| {
-        let common = r.top().min(y + height) - r.y.max(y);
-        common > LEVEL * r.height.max(height)
-    };
-    let others = fitting.iter().map(|(_, e)| *e);
-    let others = others.filter(|e| e.class == template.class && level(&e.rect));
-    std::iter::once(template)
-        .chain(others)
-        .map(|e| element(e.rect.centre().0, e.rect.width))
+    let pitch = distance * (template.rect.width / (WIDEST * distance)).ceil();
+    let from = template.rect.centre().0;
+    let on_each_side = (length / pitch).floor().min(MOST);
+    (-(on_each_side as i64)..=on_each_side as i64)
+        .map(|k| element(from + pitch * k as f64, template.rect.width))
         .collect()
 }
 
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
     use crate::partial::PartialLayout;
 
-    const TEMPLATES: [Element; 5] = [
+    const TEMPLATES: [Element; 3] = [
         Element {
             class: Class::Window,
             rect: Rect {
@@ -198,27 +198,9 @@ mod tests {
         Element {
             class: Class::Shop,
             rect: Rect {
-                x: 35.0,
+                x: 26.0,
                 y: 2.0,
-                width: 40.0,
-                height: 28.0,
-            },
-        },
-        Element {
-            class: Class::Shop,
-            rect: Rect {
-                x: 60.0,
-                y: 2.0,
-                width: 40.0,
-                height: 28.0,
-            },
-        },
-        Element {
-            class: Class::Shop,
-            rect: Rect {
-                x: 80.0,
-                y: 3.0,
-                width: 38.0,
+                width: 28.0,
                 height: 28.0,
             },
         },
@@ -277,12 +259,14 @@ mod tests {
     }
 
     #[test]
-    fn wide_shops_stand_where_candidates_have_them() {
+    fn wide_shops_stand_two_columns_apart() {
         let row = filled(None, 48.0, [0.1, 0.5]);
-        let at: Vec<(f64, f64)> = row.iter().map(|e| (e.rect.x, e.rect.width)).collect();
-        // The third candidate of 40 overlaps the first.
-        assert_eq!(at, [(35.0, 40.0), (80.0, 38.0)]);
-        assert!(row.iter().all(|e| (e.rect.y, e.rect.height) == (2.0, 28.0)));
+        let at: Vec<f64> = row.iter().map(|e| e.rect.x).collect();
+        assert_eq!(at, [26.0, 86.0]);
+        let size = |e: &Element| (e.class, e.rect.width, e.rect.height);
+        assert!(row.iter().all(|e| size(e) == (Class::Shop, 28.0, 28.0)));
+        let before_one = Some(Rect::new(88.0, 0.0, 16.0, 30.0));
+        assert_eq!(filled(before_one, 48.0, [0.1, 0.5]).len(), 1);
     }
 
     #[test]
