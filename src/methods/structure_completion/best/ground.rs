@@ -149,6 +149,10 @@ fn places(template: &Element, bays: &[Rect], length: f64) -> Vec<Element> {
             .collect();
     }
     let pitch = distance * (template.rect.width / (WIDEST * distance)).ceil();
+    // Windows above that stand in one place tell no distance.
+    if distance <= 0.0 || !pitch.is_finite() {
+        return Vec::new();
+    }
     let from = template.rect.centre().0;
     let on_each_side = (length / pitch).floor().min(MOST);
     (-(on_each_side as i64)..=on_each_side as i64)
@@ -267,6 +271,13 @@ mod tests {
         assert!(row.iter().all(|e| size(e) == (Class::Shop, 28.0, 28.0)));
         let before_one = Some(Rect::new(88.0, 0.0, 16.0, 30.0));
         assert_eq!(filled(before_one, 48.0, [0.1, 0.5]).len(), 1);
+    }
+
+    #[test]
+    fn windows_in_one_place_tell_no_distance() {
+        let bays = [Rect::new(10.0, 50.0, 12.0, 20.0); 3];
+        assert!(places(&TEMPLATES[1], &bays, 122.0).is_empty());
+        assert_eq!(places(&TEMPLATES[0], &bays, 122.0).len(), 3);
     }
 
     #[test]
