@@ -9,6 +9,8 @@ mod common;
 mod cga_judge;
 mod cities;
 mod completion;
+#[path = "../common/doors.rs"]
+mod doors;
 mod facades;
 mod grammar;
 mod houses;

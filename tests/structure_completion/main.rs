@@ -6,6 +6,8 @@ mod cases;
 mod chain;
 mod coherence;
 mod commands;
+#[path = "../common/doors.rs"]
+mod doors;
 mod meaning;
 mod optimizers;
 mod policy;

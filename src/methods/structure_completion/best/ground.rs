@@ -1,10 +1,14 @@
 //! The ground floor that a layout leaves empty.
 //!
 //! A ground floor is empty where nothing but a new door stands at the height of that door, or, without a door, where the lowest
-//! element of all, balconies aside, stands higher than one storey is from the next. Both are rare in whole facades: of the doors of CMP
-//! 8 in 100 stand alone. Below the windows of the row above, windows or shops are then added, one each, where
-//! nothing is known and the door leaves room; shops too wide for that stand two or more columns apart. All have one height and
-//! one lower edge, those of the candidate under which the sum of the values of the candidates that are like them is largest.
+//! element of all, balconies aside, stands higher than the distance of two rows. Both are rare in whole facades: of the doors of CMP
+//! 8 in 100 stand alone. A row of windows or of shops of one height `h` and one lower edge `y` is added, up to three rows without a door:
+//!
+//! - Windows stand below the windows above and have their widths. With `d` the distance of those windows, shops of a width `w` of
+//!   at most `0.85 d` stand below them, too; wider ones stand `d ceil(w / (0.85 d))` apart, on both sides of the candidate's place.
+//! - An element is added where its centre is unknown, clear of the door, of the row above and of everything else.
+//! - Class, `y`, `h` and `w` are those of one of the 30 candidates of the highest value that fit, the one under which the sum of
+//!   the values of the best candidates that are like the row's elements is largest.
 
 use super::apart::Apart;
 use super::fill::typical_gap;

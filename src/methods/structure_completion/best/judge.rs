@@ -8,11 +8,12 @@
 //! Sets are not free: the windows of a layout lie on the lines of one lattice. For each lattice of the pool, candidates on its
 //! lines are taken by falling `p_i` as long as the score rises and nothing overlaps; what is chosen is put on shared
 //! lines (`regular`), windows that then stand alone on a line are left out, the balconies of each row are made even (`rows`), and
-//! windows that are closer to others than windows are ([`super::apart`]) are left out. The layout of the highest score is the one of least expected risk among those that were tried.
+//! windows nearer to another one than the distance that windows keep ([`super::apart`]) are left out. The layout of the highest score
+//! is the one of least expected risk among those that were tried.
 //!
 //! A row with a rhythm of its own ([`super::rhythm`]) is continued in the place of what the lattice has there. Last, a ground floor that
-//! is left empty is filled ([`super::ground`]). That does not count for the score: single elements of a ground floor are too uncertain to
-//! pay, but a building has one.
+//! is left empty is filled ([`super::ground`]). That does not count for the score: an element of a ground floor is too uncertain to raise
+//! the expected F1, but facades without any are rare.
 //!
 //! Doors are not chosen by their score. A facade that is seen without a door gets at most one, and that is asked beforehand
 //! ([`super::doors`]); one that shows a single door gets no other; one that shows several may get more.
