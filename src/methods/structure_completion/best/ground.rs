@@ -2,7 +2,7 @@
 //!
 //! A ground floor is empty where nothing but a new door stands at the height of that door, or, without a door, where the lowest
 //! element of all, balconies aside, stands higher than the distance of two rows. Both are rare in whole facades: of the doors of CMP
-//! 8 in 100 stand alone. A row of windows or of shops of one height `h` and one lower edge `y` is added, up to three rows without a door:
+//! 7 in 100 stand alone (`cargo test --test real_data new_doors`). A row of windows or of shops of one height `h` and one lower edge `y` is added, up to three rows without a door:
 //!
 //! - Windows stand below the windows above and have their widths. With `d` the distance of those windows, shops of a width `w` of
 //!   at most `0.85 d` stand below them, too; wider ones stand `d ceil(w / (0.85 d))` apart, on both sides of the candidate's place.
