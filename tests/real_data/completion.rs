@@ -1,6 +1,6 @@
 //! Structure completion on real facades: the default method against every baseline.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use edifice::io::{ReadOptions, read_source};
 use edifice::methods::structure_completion::layout::{Element, Layout, extract, scope};
@@ -15,7 +15,7 @@ use edifice_experiments::layouts;
 use crate::cases::cases;
 use crate::doors::doors_and_alone;
 
-fn read(path: &PathBuf) -> Layout {
+fn read(path: &Path) -> Layout {
     let source = read_source(path, &ReadOptions::default()).expect("readable");
     extract::elements(&source.labelled().expect("a layout")).expect("elements")
 }
@@ -26,7 +26,7 @@ fn the_default_method_is_above_every_baseline_over_all_tasks_and_below_none_in_a
         return;
     };
     let files = layouts::files(&folder.join("facades/ecp2011/labels"), ".png").expect("files");
-    let all: Vec<Layout> = files.iter().map(read).collect();
+    let all: Vec<Layout> = files.iter().map(|f| read(f)).collect();
     assert_eq!(all.iter().filter(|l| scope::in_scope(l)).count(), 104);
     let (known, test): (Vec<_>, Vec<_>) =
         all.into_iter().enumerate().partition(|(k, _)| k % 4 != 0);
@@ -88,7 +88,7 @@ fn new_doors_of_cmp_stand_alone_no_more_often_than_true_ones() {
         return;
     };
     let files = layouts::files(&folder.join("facades/cmp"), ".xml").expect("files");
-    let all: Vec<Layout> = files.iter().map(read).collect();
+    let all: Vec<Layout> = files.iter().map(|f| read(f)).collect();
     let share = |[doors, alone]: [usize; 2]| 100.0 * alone as f64 / doors.max(1) as f64;
     let sum = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
     let of_truth = all
