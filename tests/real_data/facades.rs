@@ -66,7 +66,7 @@ fn check_all(name: &str, grids: &[LabelGrid]) {
     );
 }
 
-fn label_images(folder: &str) -> Option<Vec<LabelGrid>> {
+pub(crate) fn label_images(folder: &str) -> Option<Vec<LabelGrid>> {
     let folder = real_data(folder)?.join(folder);
     let read = |file: &PathBuf| io::read_label_grid(file, &ReadOptions::default()).unwrap();
     Some(files(&folder, "png").iter().map(read).collect())

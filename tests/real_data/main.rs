@@ -16,3 +16,4 @@ mod grammar;
 mod houses;
 mod joint;
 mod procedural_logic;
+mod resize;

@@ -1,7 +1,8 @@
 //! Another size by whole bands: columns that stand together repeat together, floors at their own rhythm.
 //!
 //! A *seam* is a line across the facade. A band `[a, b)` may be repeated or taken away when the facade is the same along its two
-//! seams: in every strip both cross the background, or one region that reaches from one seam to the other, or two
+//! seams: in every strip both cross the background, or one region that reaches from one seam to the other and spans several columns
+//! of which some are left (a balcony before several windows) or, doors aside, of whose length enough is left (a shop), or two
 //! regions of one label and one place and size across, at the same distance from their edges and with background between them: panes of
 //! one window are no windows. All floors get the same columns, and what is in line stays in line. Each band has one count for all
 //! floors:
@@ -234,6 +235,12 @@ impl AxisView<'_> {
                 }
                 let mut counts = plan.counts.clone();
                 counts[k].1 += if more { 1 } else { -1 };
+                let removed: Vec<Band> = (counts.iter().filter(|(_, count)| *count < 0))
+                    .map(|(band, _)| *band)
+                    .collect();
+                if !self.all_give_way(&removed) {
+                    continue;
+                }
                 let after = shares(
                     &apply(&self.pieces, &counts, self.side, self.noise).0,
                     self.noise,

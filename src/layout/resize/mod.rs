@@ -6,6 +6,7 @@ mod bands_error;
 mod contacts;
 mod in_line;
 mod pitch;
+mod runs;
 mod terminals;
 #[cfg(test)]
 mod tests;

@@ -278,6 +278,45 @@ fn a_house_is_never_taken_away() {
     }
 }
 
+/// Four columns of windows above a wide door below the second one, between shops below one and below two.
+fn wide_door() -> Facade {
+    let mut facade = windows(4, 3);
+    let high = 15.0;
+    facade.regions.retain(|r| r.rect.y > 0.0);
+    for (label, from, to) in [
+        ("shop", 0.0, 20.0),
+        ("door", 20.0, 45.0),
+        ("shop", 45.0, 90.0),
+    ] {
+        facade.regions.push(Region {
+            label: label.into(),
+            rect: Rect::new(from, 0.0, to - from, high),
+        });
+    }
+    facade.check_tiling().unwrap();
+    facade
+}
+
+#[test]
+fn a_column_is_not_cut_out_of_a_door() {
+    let own = wide_door();
+    let door = |f: &Facade| {
+        let door = f.regions.iter().find(|r| r.label == "door").unwrap();
+        (door.rect.x, door.rect.width)
+    };
+    // The seams of the second column would both lie within the door, those of the last one lie within a shop below two.
+    let narrow = resized(&own, 70.0, own.height).unwrap();
+    assert_eq!(narrow.scale[0], 1.0);
+    assert_eq!(door(&narrow.facade), (20.0, 25.0));
+    assert_eq!(narrow.facade.regions.len(), own.regions.len() - 6);
+    let wide = resized(&own, 110.0, own.height).unwrap();
+    assert_eq!(door(&wide.facade).1, 25.0);
+    // Of the shop below two windows one column is left, and no more is taken away.
+    let narrower = resized(&own, 50.0, own.height).unwrap();
+    assert!((door(&narrower.facade).1 - 25.0 * narrower.scale[0]).abs() < 1e-9);
+    narrower.facade.check_tiling().unwrap();
+}
+
 fn labels(facade: &Facade) -> BTreeSet<&str> {
     facade.regions.iter().map(|r| r.label.as_str()).collect()
 }

@@ -6,6 +6,7 @@ use super::apply::Band;
 use super::contacts::Contacts;
 use super::in_line::{Piece, is_wall};
 use super::pitch::{of_one_kind, pitches};
+use super::runs::Runs;
 use edifice_shape::{Axis, Facade};
 
 /// Shortest and longest band, as shares of the side.
@@ -16,6 +17,12 @@ const HOUSE: (f64, f64) = (0.8, 1.0);
 
 /// Least length of a region through which a seam may go if it must, as a share of the side.
 const WIDE: f64 = 0.07;
+
+/// Least share of an element's length that is left when bands within it are taken away, unless it spans several columns.
+const LEAST_LEFT: f64 = 0.3;
+
+/// The label of what keeps its length unless it spans several columns.
+const DOOR: &str = "door";
 
 /// Regions across more than this share of the facade are cornices and the like.
 const MOST_ACROSS: f64 = 0.5;
@@ -66,6 +73,7 @@ pub(super) struct AxisView<'a> {
     lowest: BTreeSet<&'a str>,
     /// The lengths of the rows, across.
     rows: Vec<f64>,
+    runs: Runs,
     length_across: f64,
     pub(super) side: f64,
     pub(super) noise: f64,
@@ -127,6 +135,7 @@ impl<'a> AxisView<'a> {
             axis,
             lowest,
             contacts: Contacts::new(&pieces, &cells, side),
+            runs: Runs::new(&pieces, &cells, noise),
             pieces,
             cuts,
             cells,
@@ -159,7 +168,7 @@ impl<'a> AxisView<'a> {
                 let fits = |&band: &Band| {
                     let share = (band.1 - band.0) / self.side;
                     (shortest..=longest).contains(&share)
-                        && self.alike((from, to), band, which >= Columns::Cut)
+                        && self.alike((from, to), band, which >= Columns::Cut, more)
                         && self.repeatable(band, which)
                         && (which >= Columns::Single || self.of_its_own(band) <= MOST_OWN)
                 };
@@ -211,12 +220,13 @@ impl<'a> AxisView<'a> {
         new.map(|(_, length)| length).sum::<f64>() / self.length_across
     }
 
-    /// True if the facade is the same along both seams.
-    fn alike(&self, (from, to): (usize, usize), (a, b): Band, loose: bool) -> bool {
+    /// True if the facade is the same along both seams of a band that is repeated (`more`) or taken away.
+    fn alike(&self, (from, to): (usize, usize), (a, b): Band, loose: bool, more: bool) -> bool {
         (0..self.cells[from].len()).all(|row| {
             let [p, q] = [from, to].map(|column| self.cells[column][row]);
             if p == q {
-                return true;
+                let p = &self.pieces[p];
+                return is_wall(p.label) || self.gives_way(p, &[(a, b)], more);
             }
             let (p, q) = (&self.pieces[p], &self.pieces[q]);
             if p.label != q.label {
@@ -230,6 +240,23 @@ impl<'a> AxisView<'a> {
             let wide = length(p).min(length(q)) >= WIDE * self.side;
             is_wall(p.label) || (level && ((placed && apart()) || (loose && wide)))
         })
+    }
+
+    /// True if all regions give way to bands that are taken away together.
+    pub(super) fn all_give_way(&self, bands: &[Band]) -> bool {
+        let mut elements = self.pieces.iter().filter(|p| !is_wall(p.label));
+        elements.all(|p| self.gives_way(p, bands, false))
+    }
+
+    /// True if an element may become longer (`more`) or shorter by the bands within it: because it spans several columns of which
+    /// some are left, or, doors aside, because enough of its length is.
+    fn gives_way(&self, piece: &Piece, bands: &[Band], more: bool) -> bool {
+        let (start, end) = piece.along;
+        let within = bands.iter().filter(|(a, b)| start < *a && *b < end);
+        let change: f64 = within.map(|(a, b)| b - a).sum();
+        let is_left = more || change <= (1.0 - LEAST_LEFT) * (end - start);
+        let is_door = piece.label.eq_ignore_ascii_case(DOOR);
+        change == 0.0 || (is_left && !is_door) || self.runs.remain(piece, bands)
     }
 
     fn label(&self, column: usize, row: usize) -> &str {
