@@ -1,8 +1,9 @@
 //! Element layouts from facades of any source: which part is facade, which regions are elements.
 //!
 //! - CMP: cropped to the object `facade` where there is exactly one.
-//! - Label pictures (ECP, Graz): cropped to the rows and columns that hold more than sky, void and chimney.
-//! - Layouts that spell out windows (`glass`, `frame`): connected pieces are one window.
+//! - Label pictures (ECP, Graz) and tilings, which are pictures by another name: cropped to the rows and columns that
+//!   hold more than sky, void and chimney; connected areas are one element.
+//! - Pictures and tilings that spell out windows (`glass`, `frame`): connected parts are one window.
 
 use super::{Class, Element, Layout};
 use edifice_shape::{Facade, GridError, LabelGrid, Labelled, Rect, Span, components};
@@ -25,21 +26,20 @@ pub fn elements(labelled: &Labelled) -> Result<Layout, GridError> {
     }
 }
 
-/// Elements of a layout of rectangles. With exactly one region `facade` the layout is cropped to it.
+/// Elements of a layout of rectangles. A tiling is read as the picture of it, so that pieces of one element are joined;
+/// any other layout with exactly one region `facade` is cropped to it.
 ///
 /// # Errors
-/// [`GridError`] when a tiling that spells out its windows cannot be drawn as a grid.
+/// [`GridError`] when a tiling cannot be drawn as a grid.
 pub fn of_facade(facade: &Facade) -> Result<Layout, GridError> {
+    if facade.check_tiling().is_ok() {
+        return of_picture(&LabelGrid::from_facade(facade, None)?);
+    }
     let mut frames = facade.regions.iter().filter(|r| r.label == "facade");
     let frame = match (frames.next(), frames.next()) {
         (Some(frame), None) => frame.rect,
         _ => facade.domain(),
     };
-    if facade.regions.iter().any(|r| r.label == "glass")
-        && let Ok(grid) = LabelGrid::from_facade(facade, None)
-    {
-        return of_parts(&grid);
-    }
     let elements = facade.regions.iter().filter_map(|r| {
         let class = Class::of_label(&r.label)?;
         Some(Element::new(class, r.rect))
@@ -47,7 +47,8 @@ pub fn of_facade(facade: &Facade) -> Result<Layout, GridError> {
     Ok(cropped(&facade.name, frame, elements))
 }
 
-/// Elements of a label picture, cropped to the facade.
+/// Elements of a label picture, cropped to the facade: its connected areas, where windows are spelt out (`glass`) those
+/// of their parts together.
 ///
 /// # Errors
 /// [`GridError`] when the grid is not valid.
@@ -74,29 +75,26 @@ pub fn of_picture(grid: &LabelGrid) -> Result<Layout, GridError> {
     if frame.left >= frame.right {
         frame = whole(grid);
     }
-    let class = |label: usize| Class::of_label(&grid.labels[label]);
-    Ok(cropped(&grid.name, rect(grid, frame), areas(grid, class)))
+    let areas = match grid.labels.iter().position(|label| label == "glass") {
+        Some(glass) => whole_windows(grid, glass),
+        None => areas(grid, |label| Class::of_label(&grid.labels[label])),
+    };
+    Ok(cropped(&grid.name, rect(grid, frame), areas))
 }
 
-/// Elements of a tiling in which windows are made of parts.
-fn of_parts(grid: &LabelGrid) -> Result<Layout, GridError> {
+/// The elements of a picture in which windows are made of parts, among them that of number `glass`.
+fn whole_windows(grid: &LabelGrid, glass: usize) -> Vec<Element> {
     // One label for all parts, so that they connect.
-    let window = grid.labels.iter().position(|l| l == "glass").unwrap_or(0);
-    let is_part = |label: &str| WINDOW_PARTS.contains(&label);
+    let is_part = |label: u16| WINDOW_PARTS.contains(&grid.labels[usize::from(label)].as_str());
     let mut joined = grid.clone();
-    for cell in &mut joined.cells {
-        if is_part(&grid.labels[usize::from(*cell)]) {
-            // The index of a label of this grid fits its cells.
-            *cell = window.try_into().unwrap_or(*cell);
-        }
+    for cell in joined.cells.iter_mut().filter(|cell| is_part(**cell)) {
+        // The index of a label of this grid fits its cells.
+        *cell = glass.try_into().unwrap_or(*cell);
     }
-    let class = |label: usize| match label == window {
+    areas(&joined, |label| match label == glass {
         true => Some(Class::Window),
         false => Class::of_label(&grid.labels[label]),
-    };
-    joined.check()?;
-    let frame = rect(grid, whole(grid));
-    Ok(cropped(&grid.name, frame, areas(&joined, class)))
+    })
 }
 
 /// The connected areas of a picture that are elements.
@@ -151,5 +149,67 @@ fn cropped(name: &str, frame: Rect, elements: impl IntoIterator<Item = Element>)
         width: frame.width,
         height: frame.height,
         elements: kept,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use edifice_shape::{Region, decompose};
+
+    /// A picture of cells of 10 x 10, the uppermost row first: `s`ky, `.` wall, `w`indow, `d`oor, `g`lass, `f`rame.
+    fn picture(rows: &[&str]) -> LabelGrid {
+        let names = [
+            ('s', "sky"),
+            ('.', "wall"),
+            ('w', "window"),
+            ('d', "door"),
+            ('g', "glass"),
+            ('f', "frame"),
+        ];
+        let number = |c: char| names.iter().position(|(own, _)| *own == c);
+        let cells = rows.iter().rev().flat_map(|row| row.chars());
+        let cuts = |count: usize| (0..=count).map(|k| 10.0 * k as f64).collect();
+        LabelGrid {
+            name: "f".into(),
+            unit: "px".into(),
+            xs: cuts(rows[0].len()),
+            ys: cuts(rows.len()),
+            labels: names.map(|(_, name)| name.into()).to_vec(),
+            cells: cells.map(|c| number(c).unwrap() as u16).collect(),
+        }
+    }
+
+    #[test]
+    fn a_picture_and_the_tiling_made_of_it_have_the_same_elements() {
+        let whole = [
+            "sssssss", "s.....s", "s.ww..s", "s.w.w.s", "s.d...s", "sdd...s",
+        ];
+        let parts = [
+            "sssssss", "..fff..", "..fgf..", "..fgf..", "..fff.w", "....ddd",
+        ];
+        for (rows, windows) in [(whole, 2), (parts, 2)] {
+            let grid = picture(&rows);
+            let tiling = decompose(&grid).expect("a tiling").facade;
+            let labels = |name: &str| tiling.regions.iter().filter(|r| r.label == name).count();
+            assert!(labels("sky") > 0 && labels("window") + labels("frame") > 2);
+            let (drawn, split) = (of_picture(&grid).unwrap(), of_facade(&tiling).unwrap());
+            assert_eq!(drawn, split);
+            assert_eq!(
+                (drawn.count(Class::Window), drawn.count(Class::Door)),
+                (windows, 1)
+            );
+            assert_eq!(drawn.height, 50.0);
+        }
+    }
+
+    #[test]
+    fn elements_on_a_wall_stay_apart_though_they_touch() {
+        let window = |x: f64| Region {
+            label: "window".into(),
+            rect: Rect::new(x, 10.0, 10.0, 20.0),
+        };
+        let facade = Facade::new("f", "m", 60.0, 40.0, vec![window(10.0), window(20.0)]).unwrap();
+        assert_eq!(of_facade(&facade).unwrap().count(Class::Window), 2);
     }
 }
