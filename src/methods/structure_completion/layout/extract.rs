@@ -12,7 +12,7 @@ use edifice_shape::{Facade, GridError, LabelGrid, Labelled, Rect, Span, componen
 const AROUND: [&str; 5] = ["sky", "void", "chimney", "unlabelled", "background"];
 /// Labels of the parts of a window; dormers and shutters are not.
 const WINDOW_PARTS: [&str; 3] = ["glass", "frame", "window"];
-/// Elements thinner than this share of the facade's longer side are specks.
+/// Elements thinner than this share of the facade's shorter side are specks.
 const SPECK: f64 = 0.004;
 
 /// Elements of a facade in either form.
@@ -124,7 +124,7 @@ fn rect(grid: &LabelGrid, span: Span) -> Rect {
 /// The elements with their centre in `frame`, cut to it, its lower left as the origin; without specks and
 /// without an element that another one of its class covers.
 fn cropped(name: &str, frame: Rect, elements: impl IntoIterator<Item = Element>) -> Layout {
-    let least = SPECK * frame.width.max(frame.height);
+    let least = SPECK * frame.width.min(frame.height);
     let mut kept: Vec<Element> = Vec::new();
     for element in elements {
         let r = element.rect;
@@ -211,5 +211,15 @@ mod tests {
         };
         let facade = Facade::new("f", "m", 60.0, 40.0, vec![window(10.0), window(20.0)]).unwrap();
         assert_eq!(of_facade(&facade).unwrap().count(Class::Window), 2);
+    }
+
+    #[test]
+    fn windows_of_a_long_frontage_are_no_specks() {
+        let window = |k: u32| Region {
+            label: "window".into(),
+            rect: Rect::new(f64::from(k), 1.0, 0.8, 1.4),
+        };
+        let facade = Facade::new("f", "m", 300.0, 9.0, (0..300).map(window).collect()).unwrap();
+        assert_eq!(of_facade(&facade).unwrap().count(Class::Window), 300);
     }
 }
