@@ -2,8 +2,9 @@
 
 use crate::cases::cases;
 use edifice::io::{building_json, footprint};
+use edifice::methods::building_exteriors::attributes::attributes;
 use edifice::methods::building_exteriors::design::{
-    CompleteError, Edit, EditError, around, edited, observed, variants,
+    CompleteError, Edit, EditError, around, completions, edited, observed, variants,
 };
 use edifice::methods::building_exteriors::house::walls::walls_of_pieces;
 use edifice::methods::building_exteriors::house::{
@@ -11,8 +12,9 @@ use edifice::methods::building_exteriors::house::{
 };
 use edifice::methods::building_exteriors::mass::footprint::PlanError;
 use edifice::methods::building_exteriors::mass::{SearchLimits, iou};
+use edifice::methods::building_exteriors::model_file::ModelFile;
 use edifice::rng::stream;
-use edifice::shape::{BoxStyle, Building, PlanUnion, Side};
+use edifice::shape::{BoxStyle, Building, Hidden, PlanUnion, Side};
 
 fn database() -> Database {
     let path = concat!(
@@ -182,6 +184,38 @@ fn a_partial_house_tells_what_cannot_change() {
     assert!(row[39..].iter().flatten().all(|v| *v == 1.0));
     let kept = observed(house, &["bbox".into()]).unwrap();
     assert!(kept[..3].iter().all(Option::is_some) && kept[3..].iter().all(Option::is_none));
+}
+
+/// A house as it is measured from a city model: its boxes are all there, its porches, windows and chimneys were not seen.
+#[test]
+fn a_measured_mass_stays_when_the_house_is_completed() {
+    let database = database();
+    let text = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/datasets/building_exteriors/real.houses.json"
+    ));
+    let model = ModelFile::from_json(text).unwrap();
+    let plain = |h: &&Building| h.boxes.iter().all(|b| b.style == BoxStyle::Main);
+    for house in database.buildings.iter().filter(plain).take(2) {
+        let mut seen = house.clone();
+        seen.facades.clear();
+        seen.special.clear();
+        seen.unobserved = vec![Hidden::Porch, Hidden::Facades, Hidden::Special];
+        let row = observed(&seen, &[]).unwrap();
+        let whole = attributes(&seen).unwrap();
+        assert_eq!(row, whole);
+        let options = Options::default();
+        let made = completions(&seen, &model, &row, 2, &database, &options, 1).unwrap();
+        assert_eq!(made.len(), 2);
+        for completed in made {
+            let reached = &completed.report.reached;
+            for c in 0..15 {
+                let off = (reached[c] - row[c].unwrap()).abs();
+                assert!(off < 0.02, "{}: column {c} off by {off}", house.name);
+            }
+            assert!(!completed.building.facades.is_empty());
+        }
+    }
 }
 
 #[test]

@@ -78,12 +78,14 @@ pub(crate) struct CompleteArgs {
     model: PathBuf,
     #[command(flatten)]
     input: Input,
-    /// Attributes to take as observed; all others are completed. All by default.
+    /// Attributes to take as observed; all others are completed. All by default; with --output those of a house that names
+    /// its unobserved parts, as `building import` writes it. Of one that names none, only what cannot change when more of the
+    /// house appears: sizes of garages and porches that are there, sides with facade pieces, and styles that are there.
     #[arg(long, value_delimiter = ',')]
     keep: Vec<String>,
-    /// Build the completed houses into this folder: boxes and facade pieces of the partial houses stay as they are, the
-    /// houses nearest to the model's answer come first.
-    #[arg(short, long, value_name = "DIR")]
+    /// Build the completed houses into this folder: boxes and facade pieces of the partial houses stay as they are, the rest
+    /// is that of the most probable answers of the model, the houses nearest to their answer come first.
+    #[arg(short, long, value_name = "DIR", conflicts_with_all = ["schema", "groups", "most_probable"])]
     output: Option<PathBuf>,
     /// Give the buildings of a city model windows and doors, with a probability on each: INPUT is a city, in every format
     /// that `edifice city` reads, and --output a CityJSON file of level of detail 3 (`*.city.json`). Walls and roofs keep

@@ -38,7 +38,8 @@ const ENOUGH: f64 = 0.03;
 const APART: f64 = 0.05;
 
 /// Completions of a partial house: the most probable answers of the model to what is given, built around the observed
-/// parts, those that come nearest to their answer first.
+/// parts, those that come nearest to their answer first. Answers whose houses miss the given size, plan or floors, as one
+/// with a porch may whose plan is known, are passed over while there are others.
 ///
 /// # Errors
 /// [`CompleteError`]; when some answers can be built, the others are passed over.
@@ -64,8 +65,14 @@ pub fn completions(
     let evidence = table(std::slice::from_ref(given))?;
     let draws = model.most_probable(&evidence, TRIES * count, POOL, APART, &mut rng)?;
     let is_given: [bool; 49] = std::array::from_fn(|c| given[c].is_some());
-    let mut houses = Vec::new();
+    let (mut houses, mut missing) = (Vec::new(), Vec::new());
     let mut first = None;
+    let misses = |house: &Generated| {
+        let off = |c: usize, given: f64| (house.report.reached[c] - given).abs();
+        let own = given.iter().enumerate().take(PARTS[0].1);
+        own.filter_map(|(c, v)| Some((c, (*v)?)))
+            .any(|(c, v)| off(c, v) > NEAR * database.deviations[c])
+    };
     let rows = wanted_rows(&draws.table);
     for (k, wanted) in rows.iter().enumerate() {
         if houses.len() == count {
@@ -77,10 +84,13 @@ pub fn completions(
             &name, partial, wanted, &is_given, database, options, &mut rng,
         );
         match house.and_then(|house| Ok(house.build()?)) {
+            Ok(house) if misses(&house) => missing.push(house),
             Ok(house) => houses.push(house),
             Err(e) => first = first.or(Some(e)),
         }
     }
+    houses.extend(missing);
+    houses.truncate(count);
     if let (true, Some(first)) = (houses.is_empty(), first) {
         // What contradicts the given values is wrong with every answer.
         return Err(match first {

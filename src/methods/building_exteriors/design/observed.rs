@@ -10,7 +10,8 @@ const FACADES: usize = 27;
 const STYLES: usize = 39;
 
 /// The attributes that a partial house tells; all others are `None`. With `keep`, those of the named groups, as they
-/// are measured. Without, what cannot change when more of the house appears:
+/// are measured. Without, all of a house that names its unobserved parts, but for those of these parts; of one that names
+/// none, as drawn by hand, what cannot change when more of the house appears:
 /// - sizes of a garage or porch that is there,
 /// - the three facade attributes of each side that has pieces,
 /// - styles that are there (not that others are absent).
@@ -23,6 +24,9 @@ pub fn observed(partial: &Building, keep: &[String]) -> Result<AttributeRow, Att
         for group in GROUPS.iter().filter(|g| !keep.iter().any(|k| k == g.name)) {
             row[group.first..group.first + group.len].fill(None);
         }
+        return Ok(row);
+    }
+    if !partial.unobserved.is_empty() {
         return Ok(row);
     }
     for (c, value) in row.iter_mut().enumerate() {
