@@ -95,6 +95,10 @@ fn contradictory_attributes_are_refused_and_nothing_is_written() {
             ],
             vec!["arf.1 = 0.7", "arf.0 = 0.3"],
         ),
+        (
+            one("bbox.h", "40"),
+            vec!["bbox.h = 40", "storeys of", "1.8 to 8 m"],
+        ),
     ];
     for (changes, words) in cases {
         let mut bad = row.clone();
@@ -111,6 +115,73 @@ fn contradictory_attributes_are_refused_and_nothing_is_written() {
         }
         assert!(!folder.path().join("out").exists(), "{changes:?}");
     }
+}
+
+/// What no house can have is refused where it is read, by the name of what was written, before anything is drawn.
+#[test]
+fn impossible_evidence_is_refused_by_its_own_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+    let path = |name: &str| data.join(name).to_string_lossy().into_owned();
+    let model = path("building_exteriors/real.houses.json");
+    let cases = [
+        ("bbox.w=-3", vec!["bbox.w is -3", "above zero"]),
+        ("bcr=-1", vec!["bcr is -1", "at most 1"]),
+        ("arf.2=0.9", vec!["arf.2 is 0.9", "from 0 to 1/3"]),
+        ("arf.1=0.7", vec!["arf.1 is 0.7", "from 0 to 1/2"]),
+        ("arf.0=0.2", vec!["arf.0 is 0.2", "from 1/3 to 1"]),
+        ("bbox.h=1", vec!["bbox.h = 1", "1.00 m on 1 floors"]),
+        ("bbox.h=30", vec!["bbox.h = 30", "10.00 m on 3 floors"]),
+    ];
+    for (given, words) in cases {
+        let sample = ["sample", &model, "-n", "2", "--given", given];
+        let generate = ["generate", "-n", "2", "--given", given, "-o", "out"];
+        let (column, value) = given.split_once('=').unwrap();
+        std::fs::write(folder.path().join("t.csv"), format!("{column}\n{value}\n")).unwrap();
+        let build = ["build", "t.csv", "-o", "out"];
+        let complete = ["complete", &model, "t.csv", "-n", "2"];
+        for args in [&sample[..], &generate, &build, &complete] {
+            let (code, message) = edifice(folder.path(), args, "1");
+            assert_eq!(code, 1, "{args:?}: {message}");
+            for word in &words {
+                assert!(message.contains(word), "{args:?}: {word:?} in {message}");
+            }
+            assert!(!message.contains("bdry"), "{args:?}: {message}");
+            let place = args[0] == "sample" || args[0] == "generate" || message.contains("row 1");
+            assert!(place, "{args:?}: {message}");
+        }
+    }
+    // Two shares say the third.
+    let shares = ["--given", "arf.1=0.5", "--given", "arf.2=0.3"];
+    let args = [&["sample", &model][..], &shares].concat();
+    let (code, message) = edifice(folder.path(), &args, "1");
+    let named = message.contains("arf.1 = 0.5 is more than arf.0");
+    assert!(code == 1 && named, "{message}");
+    // A footprint is contradicted by what is given, not by what follows from both.
+    let plot = path("building_exteriors/plot.geojson");
+    let given = ["--given", "bbox.w=40", "-o", "out"];
+    let args = [&["generate", "-n", "1", "--footprint", &plot][..], &given].concat();
+    let (code, message) = edifice(folder.path(), &args, "1");
+    let named = message.contains("bbox.w = 40 is given, the footprint has");
+    assert!(code == 1 && named, "{message}");
+    assert!(!folder.path().join("out").exists());
+}
+
+/// Small and odd values are possible ones: nothing panics on them, and what is taken for sampled is repaired.
+#[test]
+fn odd_values_are_drawn_around() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/building_exteriors");
+    let model = data.join("real.houses.json").to_string_lossy().into_owned();
+    for given in ["bbox.w=0.5", "arf.2=0.338", "arf.1=0.5", "bbox.d=0.01"] {
+        let sample = ["sample", &model, "-n", "20", "--given", given];
+        let (code, message) = edifice(folder.path(), &sample, "1");
+        assert_eq!(code, 0, "{given}: {message}");
+    }
+    std::fs::write(folder.path().join("t.csv"), "bbox.w,bcr\n-3,-1\n").unwrap();
+    let build = ["build", "t.csv", "--repair", "-o", "out"];
+    let (code, message) = edifice(folder.path(), &build, "1");
+    assert_eq!(code, 0, "{message}");
 }
 
 #[test]

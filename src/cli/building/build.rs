@@ -1,5 +1,6 @@
 //! `edifice building build` and `generate`.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use edifice_base::rng::stream;
@@ -7,6 +8,7 @@ use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::{AttributeRow, COLUMNS};
 use edifice_building_exteriors::design::MOVED;
 use edifice_building_exteriors::house::Options;
+use edifice_building_exteriors::mass::contradiction::check_known;
 use edifice_building_exteriors::observations::cell;
 use edifice_editing::building_exteriors::draws::{Draws, Order, Ordered, ordered};
 use edifice_editing::building_exteriors::redraws::Redraws;
@@ -89,6 +91,7 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
     }
     let name = table.header.iter().position(|h| h == "name");
     let (mut rows, mut names) = (Vec::new(), Vec::new());
+    let mut taken: HashMap<String, usize> = HashMap::new();
     for (r, row) in table.rows.iter().enumerate() {
         let mut wanted: AttributeRow = Vec::with_capacity(COLUMNS.len());
         for (c, place) in places.iter().enumerate() {
@@ -99,9 +102,20 @@ fn orders(table: &TextTable, args: &BuildArgs) -> Result<Vec<Order>> {
             })?;
             wanted.push(value);
         }
+        if !args.repair {
+            let place = || format!("row {}", r + 1);
+            check_known(&wanted).map_err(|e| Error::input(path, place(), e))?;
+        }
         rows.push(wanted);
         names.push(match name.map(|n| row[n].trim()) {
-            Some(name) if is_file_name(name) => name.to_owned(),
+            Some(name) if is_file_name(name) => {
+                if let Some(other) = taken.insert(name.to_owned(), r + 1) {
+                    let place = format!("row {}, column `name`", r + 1);
+                    let problem = format!("{name:?} is the name of row {other} too");
+                    return Err(Error::input(path, place, problem));
+                }
+                name.to_owned()
+            }
             Some(name) => {
                 let place = format!("row {}, column `name`", r + 1);
                 let problem = format!("{name:?} cannot name a file");

@@ -28,6 +28,12 @@ pub(super) struct Input {
 }
 
 impl Input {
+    /// True of a CSV, whose cells may hold any number.
+    pub(super) fn is_table(&self) -> bool {
+        let name = self.input.to_string_lossy();
+        name.ends_with(".csv") || name.ends_with(".csv.gz")
+    }
+
     /// The houses with all attributes of the paper, or with those of the schema.
     pub(super) fn read(&self) -> Result<Dataset> {
         match &self.schema {
@@ -72,9 +78,8 @@ impl Input {
 
     /// The observation of each house: its known attributes.
     fn observed(&self) -> Result<Vec<Observation>> {
-        let name = self.input.to_string_lossy();
         let at = |e: String| Error::content(&self.input, e);
-        let mut houses = if name.ends_with(".csv") || name.ends_with(".csv.gz") {
+        let mut houses = if self.is_table() {
             let text = building_csv::read(&self.input)?;
             if !tells_of_houses(&text.header) {
                 let problem = "the table has no columns of attributes, and needs a schema";

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::coding::attribute_rows;
 use edifice_building_exteriors::design::{completions, observed};
 use edifice_building_exteriors::dress::Settings;
+use edifice_building_exteriors::mass::contradiction::check_known;
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_editing::building_exteriors::draws::{Draws, drawn_table, given_table, style_table};
 use edifice_editing::building_exteriors::is_file_name;
@@ -150,6 +152,12 @@ pub(super) fn complete(args: &CompleteArgs) -> Result<()> {
         }
         table = table.only(&columns).map_err(Error::method)?;
     }
+    if args.input.is_table() {
+        for (r, row) in attribute_rows(&table).iter().enumerate() {
+            let path = &args.input.input;
+            check_known(row).map_err(|e| Error::input(path, format!("row {}", r + 1), e))?;
+        }
+    }
     for row in 0..table.rows() {
         let lines = drawn(&file, &table.select(&[row]), &args.draw, row as u64)?;
         // The header stands once, before the first house.
@@ -178,10 +186,14 @@ fn complete_houses(args: &CompleteArgs, file: &ModelFile, folder: &Path) -> Resu
     let database = args.making.database()?;
     let options = args.making.options();
     let mut all = Vec::new();
+    let mut names = std::collections::HashSet::new();
     for partial in building_json::read(path)? {
         let named = |e: String| Error::content(path, format!("{}: {e}", partial.name));
         if !is_file_name(&partial.name) {
             return Err(named("its name cannot name a file".into()));
+        }
+        if !names.insert(partial.name.clone()) {
+            return Err(named("another house of the file has this name".into()));
         }
         let mut row = observed(&partial, &args.keep).map_err(|e| named(e.to_string()))?;
         for (value, name) in row.iter_mut().zip(COLUMNS) {

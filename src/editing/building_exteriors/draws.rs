@@ -9,7 +9,7 @@ use edifice_building_exteriors::coding::attribute_rows;
 use edifice_building_exteriors::data::table;
 use edifice_building_exteriors::design::{Possible, possible_rows, wanted_rows};
 use edifice_building_exteriors::house::{Database, GenerateError, Generated, Options, generate};
-use edifice_building_exteriors::mass::contradiction::check_given;
+use edifice_building_exteriors::mass::contradiction::{check_given, check_known};
 use edifice_building_exteriors::mass::footprint::{decided, distance, reconcile};
 use edifice_building_exteriors::model_file::ModelFile;
 use edifice_model::Table;
@@ -158,8 +158,14 @@ pub(super) fn sampler<'a>(
         return Ok((Box::new(batch), Table::new()));
     }
     let mut given = given_table(file, &draws.given)?;
+    if let Some(plan) = plan {
+        // What is wished of the plan is checked before the rest of the plan is taken for given too.
+        let wished: [bool; 49] = std::array::from_fn(|c| given.column(COLUMNS[c]).is_ok());
+        let own = wanted_rows(&given).pop().unwrap_or([0.0; 49]);
+        let agrees = reconcile(&mut own.clone(), &wished, plan);
+        agrees.map_err(|e| Error::option("--given", e.to_string()))?;
+    }
     for (c, value) in plan.into_iter().flat_map(decided) {
-        // What is given of the plan is checked against it when the houses are made.
         if given.column(COLUMNS[c]).is_err() {
             let more = given.real(COLUMNS[c], [Some(value)]);
             given = more.map_err(Error::method)?;
@@ -190,11 +196,15 @@ pub fn style_table(
 /// Evidence as a table of one row.
 ///
 /// # Errors
-/// [`Error::Option`] for evidence that the model does not know.
+/// [`Error::Option`] for evidence that the model does not know, and for such as no house can have.
 pub fn given_table(file: &ModelFile, given: &[String]) -> Result<Table> {
+    let wrong = |message: String| Error::option("--given", message);
     let columns = file.columns().map_err(Error::method)?;
-    evidence(&file.attributes(), &columns, given)
-        .map_err(|e| Error::option("--given", e.to_string()))
+    let table = evidence(&file.attributes(), &columns, given).map_err(|e| wrong(e.to_string()))?;
+    for row in attribute_rows(&table) {
+        check_known(&row).map_err(|e| wrong(e.to_string()))?;
+    }
+    Ok(table)
 }
 
 /// Completions of one row; `row` names their random stream, and the row in errors. Of `draws`, the number, the choice among

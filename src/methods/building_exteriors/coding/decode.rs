@@ -158,7 +158,7 @@ fn shares(row: &mut AttributeRow, floors: Option<usize>, given: &AttributeRow) {
     if given[7].is_none() {
         first = match floors {
             1 => 0.0,
-            _ => first.clamp(second.max(LEAST_SHARE), (1.0 - second) / 2.0),
+            _ => first.max(second.max(LEAST_SHARE)).min((1.0 - second) / 2.0),
         };
     }
     // A given share of the ground floor leaves the rest to the others; so does a given floor area ratio.

@@ -43,6 +43,9 @@ impl Observation {
     fn outline(&self) -> Option<(usize, f64)> {
         let [w, d, bcr, bdry] = [0, 1, 3, 4].map(|c| self.row[c]);
         let (w, d, bcr, bdry) = (w?, d?, bcr?, bdry?);
+        if bcr * w * d <= 0.0 {
+            return None;
+        }
         let recess = bdry * (bcr * w * d).sqrt() - 2.0 * (w + d);
         let kind = match (bcr >= BOX, recess >= LONGER) {
             (true, false) => 0,
@@ -128,10 +131,12 @@ impl Shape {
         }
         if let (None, Some(w), Some(d), Some(bcr)) = (given[4], row[0], row[1], row[3]) {
             let recess = match (plan, self.recess) {
-                (RECESSED, Some(recess)) => recess.clamp(RECESSES[0], RECESSES[1].min(d.min(w))),
+                // A recess is no deeper than the house, however small that is.
+                (RECESSED, Some(recess)) => recess.max(RECESSES[0]).min(RECESSES[1]).min(d.min(w)),
                 _ => 0.0,
             };
-            row[4] = Some((2.0 * (w + d) + recess) / (bcr * w * d).sqrt());
+            let area = Some(bcr * w * d).filter(|area| *area > 0.0);
+            row[4] = area.map(|area| (2.0 * (w + d) + recess) / area.sqrt());
         }
     }
 

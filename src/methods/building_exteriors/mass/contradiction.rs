@@ -1,6 +1,6 @@
 //! Given attributes that no house can have together, each with the columns and the bound.
 
-use super::target::{PARTS, part};
+use super::target::{FLOOR_SHARE, PARTS, part};
 use crate::attributes::COLUMNS;
 
 /// Columns of a row.
@@ -8,6 +8,24 @@ const N: usize = COLUMNS.len();
 /// Slack of comparisons (m, or shares).
 const SLACK: f64 = 0.005;
 
+/// Largest and least share of a floor, from the ground floor up: boxes stand on the ground, so that no floor is larger than
+/// the one below it.
+const SHARES: [([f64; 2], &str); 3] = [
+    (
+        [1.0 / 3.0, 1.0],
+        "from 1/3 to 1 (the ground floor is the largest of at most three)",
+    ),
+    (
+        [0.0, 0.5],
+        "from 0 to 1/2 (no floor is larger than the one below it)",
+    ),
+    (
+        [0.0, 1.0 / 3.0],
+        "from 0 to 1/3 (no floor is larger than the one below it)",
+    ),
+];
+/// Heights of storeys (m) beyond which a house has no rooms that one could live in.
+const STOREY: [f64; 2] = [1.8, 8.0];
 /// Largest size of a house (m), and what rounding may leave of a zero.
 const LARGEST: f64 = 200.0;
 const ROUNDING: f64 = 1e-9;
@@ -92,6 +110,20 @@ pub enum Contradiction {
         /// Its value.
         below: f64,
     },
+    /// Storeys that nobody could live in.
+    #[error(
+        "bbox.h = {value} makes storeys of {storey:.2} m on {floors} floors, expected {} to {} m",
+        STOREY[0],
+        STOREY[1]
+    )]
+    Storey {
+        /// The height of the house, in metres.
+        value: f64,
+        /// The number of floors: the given one, else that of one to three that comes nearest.
+        floors: usize,
+        /// The height of a storey, in metres.
+        storey: f64,
+    },
     /// A part is higher than the house.
     #[error("{column} = {value} is more than bbox.h = {height}")]
     TooHigh {
@@ -110,6 +142,16 @@ pub enum Contradiction {
 /// The first [`Contradiction`], which names the columns.
 pub fn check(row: &[f64; N]) -> Result<(), Contradiction> {
     check_given(row, &[true; N])
+}
+
+/// Finds a contradiction among the known values of a row, in the order of [`COLUMNS`]; missing ones contradict nothing.
+///
+/// # Errors
+/// The first [`Contradiction`], which names the columns.
+pub fn check_known(row: &[Option<f64>]) -> Result<(), Contradiction> {
+    let known = |c: usize| row.get(c).copied().flatten();
+    let given: [bool; N] = std::array::from_fn(|c| known(c).is_some());
+    check_given(&std::array::from_fn(|c| known(c).unwrap_or(0.0)), &given)
 }
 
 /// Finds a contradiction among the values that are given: a condition counts when all its columns are.
@@ -158,20 +200,30 @@ pub fn check_given(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradictio
             "at most 0.9 (windows need walls around them)",
         )?;
     }
+    let (shares, known) = shares(row, given);
     range(
         6,
-        !all(&[6, 7, 8]) || (row[6] + row[7] + row[8] - 1.0).abs() < SLACK,
+        !known || (shares.iter().sum::<f64>() - 1.0).abs() < SLACK && shares[2] > -SLACK,
         "such that the shares of the floors sum to 1",
     )?;
     for c in [7, 8] {
-        if all(&[c, c - 1]) && row[c] > row[c - 1] + SLACK {
+        let [below, own] = [shares[c - 7], shares[c - 6]];
+        if (known || all(&[c, c - 1])) && own > below + SLACK {
             return Err(Contradiction::Floors {
                 upper: COLUMNS[c],
-                value: row[c],
+                value: own,
                 lower: COLUMNS[c - 1],
-                below: row[c - 1],
+                below,
             });
         }
+    }
+    for (k, ([least, most], expected)) in SHARES.into_iter().enumerate() {
+        let within = (least - SLACK..=most + SLACK).contains(&row[6 + k]);
+        range(6 + k, within, expected)?;
+    }
+    if given[2] {
+        let counted = 1 + shares[1..].iter().filter(|s| **s > FLOOR_SHARE).count();
+        storey(row[2], known.then_some(counted))?;
     }
     parts(row, given)?;
     let bound = least_boundary(row);
@@ -190,6 +242,35 @@ pub fn check_given(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradictio
         });
     }
     Ok(())
+}
+
+/// Checks that a house of height `value` (m) has storeys that one could live in: on the known number of floors, else on any.
+fn storey(value: f64, floors: Option<usize>) -> Result<(), Contradiction> {
+    let likely = match value < STOREY[1] {
+        true => 1,
+        false => 3,
+    };
+    let floors = floors.unwrap_or(likely);
+    let storey = value / floors as f64;
+    match (STOREY[0]..=STOREY[1]).contains(&storey) {
+        true => Ok(()),
+        false => Err(Contradiction::Storey {
+            value,
+            floors,
+            storey,
+        }),
+    }
+}
+
+/// The shares of the floors, of which the third follows from two that are given; true if all are known.
+fn shares(row: &[f64; N], given: &[bool; N]) -> ([f64; 3], bool) {
+    let mut shares = [row[6], row[7], row[8]];
+    let missing: Vec<usize> = (0..3).filter(|k| !given[6 + k]).collect();
+    if let [k] = missing[..] {
+        shares[k] = 0.0;
+        shares[k] = 1.0 - shares.iter().sum::<f64>();
+    }
+    (shares, missing.len() < 2)
 }
 
 fn parts(row: &[f64; N], given: &[bool; N]) -> Result<(), Contradiction> {
