@@ -12,6 +12,7 @@ mod facades;
 mod from_facades;
 mod import;
 mod learn;
+mod origin;
 mod output;
 mod produce;
 mod show;

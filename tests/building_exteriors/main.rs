@@ -3,6 +3,7 @@
 #[path = "../common/cases.rs"]
 mod cases;
 
+mod again;
 mod attributes;
 mod broken;
 mod coding;

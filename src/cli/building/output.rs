@@ -42,6 +42,21 @@ pub(super) enum Format {
     Ifc,
 }
 
+impl Format {
+    /// Endings of the files of a house.
+    pub(super) fn endings(self) -> &'static [&'static str] {
+        match self {
+            Format::Json => &["building.json"],
+            Format::Obj => &["obj", "mtl"],
+            Format::Glb => &["glb"],
+            Format::Cityjson => &["city.json"],
+            Format::Svg => &["svg"],
+            Format::Png => &["png"],
+            Format::Ifc => &["ifc"],
+        }
+    }
+}
+
 /// Reads the database of donors: a file, or the shipped houses.
 pub(super) fn database(path: Option<&Path>) -> Result<Database> {
     let Some(path) = path else {

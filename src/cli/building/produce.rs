@@ -13,6 +13,7 @@ use edifice_io::{gltf, write_atomic};
 use edifice_shape::Building;
 use rayon::prelude::*;
 
+use super::origin::{Before, Origin};
 use super::output::{self, Format};
 use crate::choice::{Choice, one_of};
 use crate::print;
@@ -109,19 +110,30 @@ impl Output {
         self.output.join(format!("{name}.report.json"))
     }
 
-    /// Writes a house and its report.
-    fn write(&self, house: &Generated, seconds: f64) -> Result<()> {
+    /// Writes a house and its report, which it returns.
+    fn write(&self, house: &Generated, seconds: f64, making: &Before) -> Result<String> {
         let (building, model) = (&house.building, &house.model);
         output::write(building, model, &self.output, &self.making.format)?;
-        let text = report(&house.report, Some(seconds))?;
+        let mut value = report_value(&house.report, Some(seconds))?;
+        making.note(&mut value, &self.making.format);
+        let text = value.to_string();
         let path = self.report_file(&building.name);
-        write_atomic(&path, format!("{text}\n").as_bytes())
+        write_atomic(&path, format!("{text}\n").as_bytes())?;
+        Ok(text)
     }
 }
 
-/// Makes and writes the houses; `source` is the file of their rows, for errors. Those whose report is there with the same
-/// attributes are left as they are. With `redraws`, a house that misses its row or that one would not believe gives way to
-/// one of another row.
+/// A house of a run.
+struct Made {
+    /// Its report.
+    line: String,
+    /// The house and true if it has another row, unless it was there already.
+    house: Option<(Generated, bool)>,
+}
+
+/// Makes and writes the houses; `source` is the file of their rows, for errors. Those that are there already, with all files
+/// asked for and made from the same row by the same settings, are left as they are. With `redraws`, a house that misses its row
+/// or that one would not believe gives way to one of another row.
 pub(super) fn produce(
     orders: &[Order],
     database: &Database,
@@ -139,33 +151,44 @@ pub(super) fn produce(
         order.check(options).map_err(wrong)?;
     }
     output::folder(&output.output)?;
-    let make = |(number, order): (usize, &Order)| -> Result<Option<(Generated, f64, bool)>> {
-        if !output.street && is_done(&output.report_file(&order.name), order) {
-            return Ok(None);
+    let origin = Origin::new(database, options, output.seed, redraws)?;
+    let make = |(number, order): (usize, &Order)| -> Result<Made> {
+        let before = Before::read(&output.report_file(&order.name), origin.of(number, order));
+        if let (false, Some(line)) = (
+            output.street,
+            before.line(&output.output, &order.name, &output.making.format),
+        ) {
+            let line = line.to_owned();
+            return Ok(Made { line, house: None });
         }
         let start = std::time::Instant::now();
         let made = believable(order, number, database, options, output.seed, redraws);
         let (house, other) = made.map_err(wrong)?;
         let seconds = start.elapsed().as_secs_f64();
-        output.write(&house, seconds)?;
-        Ok(Some((house, seconds, other)))
+        let line = output.write(&house, seconds, &before)?;
+        Ok(Made {
+            line,
+            house: Some((house, other)),
+        })
     };
     let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
-    let (mut done, mut near, mut replaced) = (0, 0, 0);
+    let (mut done, mut there, mut near, mut replaced) = (0, 0, 0, 0);
     for (chunk, orders) in orders.chunks(CHUNK).enumerate() {
         let numbered = orders.par_iter().enumerate();
         let made = numbered.map(|(k, order)| make((chunk * CHUNK + k, order)));
-        let made: Vec<Result<Option<(Generated, f64, bool)>>> = made.collect();
-        for house in made {
+        let made: Vec<Result<Made>> = made.collect();
+        for made in made {
             done += 1;
-            let Some((house, seconds, other)) = house? else {
+            let made = made?;
+            if output.json {
+                print::line(&made.line)?;
+            }
+            let Some((house, other)) = made.house else {
+                there += 1;
                 continue;
             };
             replaced += usize::from(other);
             near += usize::from(house.report.repaired_z <= 0.05);
-            if output.json {
-                print::line(&report(&house.report, Some(seconds))?)?;
-            }
             if output.street {
                 street.push((house.building, house.model));
             }
@@ -184,27 +207,25 @@ pub(super) fn produce(
             "{replaced} houses missed their samples or were implausible and gave way to others"
         ));
     }
+    let known = match there {
+        0 => String::new(),
+        there => format!(", {there} were there already"),
+    };
     print::message(&format!(
-        "{done} houses in {}, {near} made now within 0.05 standard deviations of their attributes",
+        "{done} houses in {}, {near} made now within 0.05 standard deviations of their attributes{known}",
         output.output.display()
     ));
     Ok(())
 }
 
-fn is_done(path: &Path, order: &Order) -> bool {
-    #[derive(serde::Deserialize)]
-    struct Wanted {
-        wanted: Vec<f64>,
-    }
-    let known = std::fs::read(path).ok();
-    let known = known.and_then(|b| serde_json::from_slice::<Wanted>(&b).ok());
-    known.is_some_and(|k| k.wanted == order.wanted)
-}
-
 /// A report as one line of JSON.
 pub(super) fn report(report: &HouseReport, seconds: Option<f64>) -> Result<String> {
+    Ok(report_value(report, seconds)?.to_string())
+}
+
+fn report_value(report: &HouseReport, seconds: Option<f64>) -> Result<serde_json::Value> {
     let mut value = serde_json::to_value(report).map_err(Error::method)?;
     value["seconds"] = serde_json::json!(seconds);
     value["columns"] = serde_json::json!(&COLUMNS[..]);
-    Ok(value.to_string())
+    Ok(value)
 }

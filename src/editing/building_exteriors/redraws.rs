@@ -48,6 +48,15 @@ impl<'a> Redraws<'a> {
         })
     }
 
+    /// All that other rows follow from, as text: the model and the question to it.
+    ///
+    /// # Errors
+    /// Those of writing the model.
+    pub fn text(&self) -> Result<String> {
+        let model = self.file.to_json().map_err(Error::method)?;
+        Ok(format!("{:?} {model}", self.draws))
+    }
+
     /// The row of an attempt, from 1, in the place of that of a house; `None` where the model gives none.
     fn row(&self, house: usize, attempt: u64) -> Result<Option<[f64; 49]>> {
         let part = house as u64 * (ATTEMPTS + 1) + attempt;
