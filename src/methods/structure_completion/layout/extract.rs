@@ -12,8 +12,12 @@ use edifice_shape::{Facade, GridError, LabelGrid, Labelled, Rect, Span, componen
 const AROUND: [&str; 5] = ["sky", "void", "chimney", "unlabelled", "background"];
 /// Labels of the parts of a window; dormers and shutters are not.
 const WINDOW_PARTS: [&str; 3] = ["glass", "frame", "window"];
-/// Elements thinner than this share of the facade's shorter side are specks.
+/// Elements thinner than this share of the facade's longer side are specks.
 const SPECK: f64 = 0.004;
+/// The longer side counts as at most so many times the shorter one, so that a long row of houses keeps its windows.
+const LONGEST: f64 = 4.0;
+/// Places that differ by less than this share of the facade's longer side are the same.
+const SAME: f64 = 1e-9;
 
 /// Elements of a facade in either form.
 ///
@@ -27,24 +31,54 @@ pub fn elements(labelled: &Labelled) -> Result<Layout, GridError> {
 }
 
 /// Elements of a layout of rectangles. A tiling is read as the picture of it, so that pieces of one element are joined;
-/// any other layout with exactly one region `facade` is cropped to it.
+/// where none is in pieces they come in the order of the regions. Any other layout with exactly one region `facade` is
+/// cropped to it.
 ///
 /// # Errors
 /// [`GridError`] when a tiling cannot be drawn as a grid.
 pub fn of_facade(facade: &Facade) -> Result<Layout, GridError> {
     if facade.check_tiling().is_ok() {
-        return of_picture(&LabelGrid::from_facade(facade, None)?);
+        let drawn = of_picture(&LabelGrid::from_facade(facade, None)?)?;
+        let written = cropped(&facade.name, facade.domain(), regions(facade));
+        return Ok(match same_elements(&written, &drawn) {
+            true => written,
+            false => drawn,
+        });
     }
     let mut frames = facade.regions.iter().filter(|r| r.label == "facade");
     let frame = match (frames.next(), frames.next()) {
         (Some(frame), None) => frame.rect,
         _ => facade.domain(),
     };
-    let elements = facade.regions.iter().filter_map(|r| {
+    Ok(cropped(&facade.name, frame, regions(facade)))
+}
+
+/// The regions of a layout that are elements.
+fn regions(facade: &Facade) -> impl Iterator<Item = Element> {
+    facade.regions.iter().filter_map(|r| {
         let class = Class::of_label(&r.label)?;
         Some(Element::new(class, r.rect))
-    });
-    Ok(cropped(&facade.name, frame, elements))
+    })
+}
+
+/// True if two layouts have the same outline and elements, in whatever order.
+fn same_elements(a: &Layout, b: &Layout) -> bool {
+    let slack = SAME * a.width.max(a.height);
+    let near = |(a, b): (f64, f64)| (a - b).abs() <= slack;
+    let same = |a: &Element, b: &Element| {
+        let (p, q) = (a.rect, b.rect);
+        let sides = [
+            (p.x, q.x),
+            (p.y, q.y),
+            (p.width, q.width),
+            (p.height, q.height),
+        ];
+        a.class == b.class && sides.into_iter().all(near)
+    };
+    near((a.width, b.width))
+        && near((a.height, b.height))
+        && a.elements.len() == b.elements.len()
+        && (a.elements.iter()).all(|own| b.elements.iter().any(|other| same(own, other)))
 }
 
 /// Elements of a label picture, cropped to the facade: its connected areas, where windows are spelt out (`glass`) those
@@ -124,7 +158,9 @@ fn rect(grid: &LabelGrid, span: Span) -> Rect {
 /// The elements with their centre in `frame`, cut to it, its lower left as the origin; without specks and
 /// without an element that another one of its class covers.
 fn cropped(name: &str, frame: Rect, elements: impl IntoIterator<Item = Element>) -> Layout {
-    let least = SPECK * frame.width.min(frame.height);
+    let sides = [frame.width, frame.height];
+    let (long, short) = (sides[0].max(sides[1]), sides[0].min(sides[1]));
+    let least = SPECK * long.min(LONGEST * short);
     let mut kept: Vec<Element> = Vec::new();
     for element in elements {
         let r = element.rect;
@@ -221,5 +257,20 @@ mod tests {
         };
         let facade = Facade::new("f", "m", 300.0, 9.0, (0..300).map(window).collect()).unwrap();
         assert_eq!(of_facade(&facade).unwrap().count(Class::Window), 300);
+        let grid = LabelGrid::from_facade(&facade, Some("wall")).unwrap();
+        assert_eq!(of_picture(&grid).unwrap().count(Class::Window), 300);
+    }
+
+    #[test]
+    fn elements_of_a_tiling_that_are_whole_keep_their_order() {
+        let mut tiling = decompose(&picture(&["....", ".w.d", "...d"]))
+            .unwrap()
+            .facade;
+        tiling.regions.reverse();
+        let written: Vec<Element> = regions(&tiling).collect();
+        assert_eq!(of_facade(&tiling).unwrap().elements, written);
+        tiling.regions.reverse();
+        let found = of_facade(&tiling).unwrap();
+        assert_eq!(found.elements, [written[1], written[0]]);
     }
 }
