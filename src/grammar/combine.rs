@@ -4,7 +4,8 @@
 //! automatic way for simple layouts. Here structurally similar grammars are merged by the *role* of
 //! their parts, so that a ground floor of one facade may stand under the floors of another:
 //!
-//! 1. Every grammar is made size-independent; its symbols get a prefix of their own (`G1_`, ...).
+//! 1. Every grammar, of a joint one each facade's, is made size-independent; its symbols get a prefix of their own
+//!    (`G1_`, ...).
 //! 2. The axioms form one group. A group of two or more symbols becomes one symbol with one rule of
 //!    weight 1 from each member.
 //! 3. Where members split along y (floors, cornices, attics), their non-terminal parts are aligned
@@ -33,13 +34,18 @@ pub const LEAST_SIMILARITY: f64 = 0.3;
 type Member<'g> = (usize, &'g str);
 
 /// Merges deterministic grammars of one unit into a stochastic, size-independent one, derived with
-/// [`derive_at`](super::derive_at). Its size is the largest width and height of the inputs; of joint
-/// grammars the first start is used.
+/// [`derive_at`](super::derive_at). Its size is the largest width and height of the inputs; each facade of a joint
+/// grammar counts as a grammar of its own.
 ///
 /// # Errors
 /// [`GrammarError`] for an invalid or stochastic grammar, different units, or no grammar at all.
 pub fn combine(grammars: &[Grammar]) -> Result<Grammar, GrammarError> {
     let first = grammars.first().ok_or(GrammarError::NoStart)?;
+    if grammars.iter().any(|g| g.starts.is_empty()) {
+        return Err(GrammarError::NoStart);
+    }
+    let each = grammars.iter().flat_map(Grammar::of_each_start);
+    let grammars = &each.collect::<Vec<_>>()[..];
     let mut sources = Vec::with_capacity(grammars.len());
     for (index, grammar) in grammars.iter().enumerate() {
         if grammar.unit != first.unit {

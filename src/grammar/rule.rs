@@ -1,5 +1,7 @@
 //! The nouns of split grammars.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use edifice_shape::Axis;
 
 /// A size along the split axis.
@@ -171,6 +173,48 @@ pub struct Grammar {
     pub starts: Vec<Start>,
     /// The rules. The order carries no meaning; writers keep it.
     pub rules: Vec<Rule>,
+}
+
+impl Grammar {
+    /// Each facade of a joint grammar as a grammar of its own, in order, with the rules that it reaches. A grammar of one
+    /// facade is given back as it is, also with rules that are never used. `O(starts x size of the rules)`.
+    pub fn of_each_start(&self) -> Vec<Grammar> {
+        if self.starts.len() == 1 {
+            return vec![self.clone()];
+        }
+        let own = |start: &Start| {
+            let reached = self.reached(&start.symbol);
+            let rules = self.rules.iter();
+            Grammar {
+                unit: self.unit.clone(),
+                starts: vec![start.clone()],
+                rules: rules
+                    .filter(|r| reached.contains(r.symbol.as_str()))
+                    .cloned()
+                    .collect(),
+            }
+        };
+        self.starts.iter().map(own).collect()
+    }
+
+    /// The symbols that a derivation from `symbol` may write, itself included.
+    fn reached<'g>(&'g self, symbol: &'g str) -> BTreeSet<&'g str> {
+        let mut rules: BTreeMap<&str, Vec<&Rule>> = BTreeMap::new();
+        for rule in &self.rules {
+            rules.entry(&rule.symbol).or_default().push(rule);
+        }
+        let mut reached = BTreeSet::from([symbol]);
+        let mut todo = vec![symbol];
+        while let Some(symbol) = todo.pop() {
+            let own = rules.get(symbol).into_iter().flatten();
+            for written in own.flat_map(|rule| rule.operation.symbols()) {
+                if reached.insert(written) {
+                    todo.push(written);
+                }
+            }
+        }
+        reached
+    }
 }
 
 #[cfg(test)]

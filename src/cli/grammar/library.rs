@@ -6,7 +6,7 @@ use std::time::Instant;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_grammar::parametric::{Library, LibraryError, Sharing};
-use edifice_grammar::{Costs, same_tiling};
+use edifice_grammar::{Costs, Grammar, GrammarError, derivation, same_tiling};
 use edifice_io as io;
 use edifice_io::grammar_library_json::{self as library_json, EncodedFacade};
 use edifice_shape::Facade;
@@ -315,7 +315,8 @@ pub(super) fn decode(args: &Decode) -> Result<()> {
   edifice grammar derive street.cga --seed 7 -o house.svg
 
 Parts that play the same role (floors over floors, ground floors over ground floors) become one symbol with a rule from
-each grammar (Wu et al. 2014, Sec. 5); the seed of derive picks among them.")]
+each grammar (Wu et al. 2014, Sec. 5); the seed of derive picks among them. Each facade of a joint grammar counts as a grammar;
+grammars with several rules for a symbol are not taken.")]
 pub(crate) struct Combine {
     /// Grammars to combine: .grammar.json or .cga, also as .gz
     #[arg(required = true, value_name = "GRAMMAR")]
@@ -327,6 +328,21 @@ pub(crate) struct Combine {
     json: Json,
 }
 
+/// Derives every facade of a grammar, to tell what keeps it from being combined.
+fn without_choices(grammar: &Grammar) -> std::result::Result<(), String> {
+    for start in 0..grammar.starts.len() {
+        derivation(grammar, start).map_err(|error| match error {
+            GrammarError::Stochastic { symbol, count } => {
+                format!(
+                    "{symbol} has {count} weighted rules; combine takes grammars without choices"
+                )
+            }
+            other => other.to_string(),
+        })?;
+    }
+    Ok(())
+}
+
 /// Runs `grammar combine`.
 pub(super) fn combine(args: &Combine) -> Result<()> {
     let grammars = args
@@ -334,6 +350,9 @@ pub(super) fn combine(args: &Combine) -> Result<()> {
         .iter()
         .map(|path| io::read_grammar(path))
         .collect::<Result<Vec<_>>>()?;
+    for (grammar, path) in grammars.iter().zip(&args.grammars) {
+        without_choices(grammar).map_err(|e| Error::content(path, e))?;
+    }
     let combined = edifice_grammar::combine(&grammars).map_err(Error::method)?;
     io::write_grammar(&combined, &args.output)?;
     let (file, count, rules) = (args.output.display(), grammars.len(), combined.rules.len());

@@ -20,7 +20,7 @@ use crate::print::Json;
 Buildings are boxes whose facades are derived from the grammars, each at its own size and with its own choices, along
 streets with roofs, trees and parks (Wu et al. 2014, Fig. 15 and 16). As .glb the whole town is written, as .png a view.")]
 pub(crate) struct Args {
-    /// Grammars, each a kind of building: .grammar.json or .cga, also as .gz
+    /// Grammars, each facade of one a kind of building: .grammar.json or .cga, also as .gz
     #[arg(required = true, value_name = "GRAMMAR")]
     grammars: Vec<PathBuf>,
     /// Number of buildings

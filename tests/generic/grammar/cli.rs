@@ -256,6 +256,19 @@ fn absolute_sizes_that_do_not_fit_shrink_with_a_warning() {
 }
 
 #[test]
+fn combine_names_the_grammar_that_has_choices() {
+    let folder = tempfile::tempdir().unwrap();
+    let [mixed, out] = ["mixed.cga", "out.cga"].map(|name| folder.path().join(name));
+    let text = "//@ facade F 8 x 8\nF --> 50% : split(x) { ~1 : A | ~1 : B } else : split(y) { ~1 : A | ~2 : B }";
+    std::fs::write(&mixed, text).unwrap();
+    let [mixed, out] = [&mixed, &out].map(|path| path.to_str().unwrap());
+    let (code, _, err) = edifice(&["combine", &fig9(), mixed, "-o", out]);
+    assert_eq!(code, 1);
+    let expected = "mixed.cga: F has 2 weighted rules; combine takes grammars without choices";
+    assert!(err.contains(expected), "{err}");
+}
+
+#[test]
 fn quiet_leaves_results_and_errors() {
     let facade = fig9().replace(".cga", ".facade.json");
     let (_, out, message) = edifice(&["infer", &facade]);

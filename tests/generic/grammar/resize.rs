@@ -285,6 +285,31 @@ mod combining {
     }
 
     #[test]
+    fn each_facade_of_a_joint_grammar_is_combined() {
+        let text = "//@ facade One 40 x 60\n//@ facade Two 40 x 50\n//@ facade sky 5 x 5\n\
+                    One --> split(y) { { 30 : Floor }* }\nTwo --> split(y) { 20 : shop | 30 : Floor }\n\
+                    Floor --> split(x) { { 8 : wall | 12 : window }* }";
+        let joint = from_str(text).unwrap();
+        let each = joint.of_each_start();
+        let count = |k: usize| (each[k].starts[0].name.as_str(), each[k].rules.len());
+        assert_eq!([0, 1, 2].map(count), [("One", 2), ("Two", 2), ("sky", 0)]);
+        for (k, own) in each.iter().enumerate() {
+            assert_eq!(derive(own, 0), derive(&joint, k));
+        }
+        let combined = combine(std::slice::from_ref(&joint)).unwrap();
+        assert_eq!(combined, combine(&each).unwrap());
+        let seen: std::collections::BTreeSet<String> = (0..40)
+            .flat_map(|seed| {
+                let mut rng = stream(seed, "joint", 0);
+                let made = derive_at(&combined, 0, 40.0, 60.0, &mut rng).unwrap();
+                made.facade.regions.into_iter().map(|r| r.label)
+            })
+            .collect();
+        let labels: Vec<&str> = seen.iter().map(String::as_str).collect();
+        assert_eq!(labels, ["shop", "sky", "wall", "window"]);
+    }
+
+    #[test]
     fn one_grammar_stays_itself() {
         let house = house("window", 30.0, 3.0);
         let combined = combine(std::slice::from_ref(&house)).unwrap();

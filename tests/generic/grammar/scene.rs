@@ -146,6 +146,21 @@ fn a_combined_grammar_makes_a_city() {
 }
 
 #[test]
+fn each_facade_of_a_joint_grammar_is_a_kind_of_building() {
+    let text = "//@ unit \"m\"\n//@ facade One 10 x 12\n//@ facade Two 8 x 9\n\
+                One --> split(y) { 3 : Floor | 9 : roof }\nTwo --> split(y) { 6 : stone | 3 : Floor }\n\
+                Floor --> split(x) { { 1 : wall | 1 : window }* }";
+    let settings = Settings {
+        buildings: 10,
+        types: 1,
+        ..Settings::default()
+    };
+    let made = city(&[from_str(text).unwrap()], &settings, 1).unwrap();
+    // A front and a side of each.
+    assert_eq!(made.facades, 4);
+}
+
+#[test]
 fn buildings_do_not_overlap() {
     let city = small();
     let boxes: Vec<[f32; 4]> = city.scene.groups[..city.buildings]

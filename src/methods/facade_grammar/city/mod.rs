@@ -100,16 +100,17 @@ struct Type {
     pitched: bool,
 }
 
-/// Builds a city from grammars (the first start of each), the same for the same seed.
+/// Builds a city from grammars, the same for the same seed. Each facade of a joint grammar is a grammar of its own.
 ///
 /// # Errors
 /// [`GrammarError`] for an invalid grammar, or no grammar at all, or one that does not fit even at
 /// its own size.
 pub fn city(grammars: &[Grammar], settings: &Settings, seed: u64) -> Result<City, GrammarError> {
-    if grammars.is_empty() {
+    if grammars.is_empty() || grammars.iter().any(|g| g.starts.is_empty()) {
         return Err(GrammarError::NoStart);
     }
-    let styles: Vec<Grammar> = grammars.iter().map(|g| style(g, settings.height)).collect();
+    let each = grammars.iter().flat_map(Grammar::of_each_start);
+    let styles: Vec<Grammar> = each.map(|g| style(&g, settings.height)).collect();
     let samplers = styles
         .iter()
         .map(Sampler::new)
