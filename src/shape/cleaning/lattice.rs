@@ -6,8 +6,9 @@
 //!    of their centres, *columns* by the abscissa of their centres; a cluster ends where the next centre is more than half a
 //!    median window away. Floors get the median bottom and top of their boxes, columns the median left and right.
 //!    A column has windows on two fifths of the floors; those of an attic between the columns make none.
-//! 2. A floor has a window in a column where it has a box; where it has one in most columns, in all. Windows in no column
-//!    stay on their floor, as wide as the others above and below them.
+//! 2. A floor has a window in a column where it has a box; where it has one in most columns, in all, but for columns with a
+//!    window of another floor at its height (a stairwell's). Windows in no column stay on their floor, as wide as the
+//!    others above and below them.
 //! 3. Balconies belong to the floor whose windows they overlap or carry. One that is at least four fifths as wide as the
 //!    facade is *running* and reaches from side to side; others take the columns that they cover, and a floor with balconies in most
 //!    columns has them in all. Bottom and top are medians.
@@ -28,7 +29,7 @@ use crate::LabelGrid;
 
 use balconies::{Balconies, balconies};
 use bands::bands;
-use boxes::{Box4, behind_balconies, boxes, clusters, filled, middle, without_specks};
+use boxes::{Box4, behind_balconies, boxes, clusters, filled, middle, overlap, without_specks};
 use paint::paint;
 
 /// A column has windows on this share of the floors.
@@ -130,7 +131,12 @@ impl Lattice {
                     let has = |groups: &[BTreeSet<usize>]| {
                         groups.iter().map(|g| g.contains(&floor)).collect()
                     };
-                    [filled(has(&on[0])), has(&on[1])].concat()
+                    let mut all = filled(has(&on[0]));
+                    for (has, column) in all.iter_mut().zip(&on[0]) {
+                        let over = |&other: &usize| overlap(&rows[other], &rows[floor]);
+                        *has &= column.contains(&floor) || !column.iter().any(over);
+                    }
+                    [all, has(&on[1])].concat()
                 })
                 .collect(),
             exact: exact(&floors, |b| b.y) && exact(&columns, |b| b.x) && exact(&loose, |b| b.x),

@@ -123,3 +123,47 @@ fn any_picture_is_cleaned() {
         assert!(clean(&windows(0, 1), wrong).is_err());
     }
 }
+
+/// A wall of 160 x 120 pixels with boxes of numbered labels (1 is `window`, 2 is `door`): left, right, bottom, top.
+fn painted(boxes: &[(u16, [usize; 4])]) -> LabelGrid {
+    let mut grid = windows(0, 1);
+    grid.labels.push("door".into());
+    grid.cells.fill(0);
+    for &(label, [left, right, bottom, top]) in boxes {
+        for y in bottom..top {
+            grid.cells[y * 160 + left..y * 160 + right].fill(label);
+        }
+    }
+    grid
+}
+
+/// The boxes of the areas of a label, from the bottom up.
+fn found(grid: &LabelGrid, label: &str) -> Vec<[f64; 4]> {
+    let elements = crate::elements_of_grid(grid).expect("elements");
+    let own = elements.regions.iter().filter(|r| r.label == label);
+    own.map(|r| [r.rect.x, r.rect.right(), r.rect.y, r.rect.top()])
+        .collect()
+}
+
+#[test]
+fn windows_of_a_stairwell_stay_between_the_floors() {
+    // Five columns on three floors, one side a pixel off, and a sixth whose windows stand half a floor higher.
+    let mut boxes = Vec::new();
+    for (column, floor) in (0..5).flat_map(|c| (0..3).map(move |f| (c, f))) {
+        let (x, y) = (10 + 24 * column, 10 + 36 * floor);
+        let off = usize::from(column + floor == 0);
+        boxes.push((1, [x, x + 14, y, y + 20 + off]));
+    }
+    for floor in 0..2 {
+        let y = 10 + 36 * floor + 18;
+        boxes.push((1, [10 + 24 * 5, 24 + 24 * 5, y, y + 20]));
+    }
+    let clean = on_lattice(&painted(&boxes));
+    let stairs = found(&clean, "window");
+    let stairs: Vec<_> = stairs.into_iter().filter(|b| b[0] > 125.0).collect();
+    assert_eq!(
+        stairs,
+        [[130.0, 144.0, 28.0, 48.0], [130.0, 144.0, 64.0, 84.0]]
+    );
+    assert_eq!(found(&clean, "window").len(), 17);
+}

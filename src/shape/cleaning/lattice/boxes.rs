@@ -137,6 +137,11 @@ pub(super) fn middle(
     [0, 1].map(|end| median(cluster.iter().map(|&k| side(&boxes[k])[end]).collect()))
 }
 
+/// True if two lengths have more than an end in common.
+pub(super) fn overlap(a: &[f64; 2], b: &[f64; 2]) -> bool {
+    a[0] < b[1] && b[0] < a[1]
+}
+
 /// All true where most are.
 pub(super) fn filled(mut has: Vec<bool>) -> Vec<bool> {
     let count = has.iter().filter(|has| **has).count();
