@@ -13,14 +13,16 @@
 //!    facade is *running* and reaches from side to side; others take the columns that they cover, and a floor with balconies in most
 //!    columns has them in all. Bottom and top are medians.
 //! 4. Behind them lie horizontal *bands*: the label of `sky`, `roof`, `wall`, `shop` and the like that most of each row shows.
-//! 5. The largest `door` stands on the ground where it is, at its own width and height.
+//! 5. Doors (`door`) stand on the ground where they are, each at its own width and height: the largest, and those beside it,
+//!    which begin below its middle and are no specks.
 //!
-//! All of it is painted in this order: bands, windows, balconies, door. Labels of other kinds are not kept.
+//! All of it is painted in this order: bands, windows, balconies, doors. Labels of other kinds are not kept.
 //! A picture whose windows lie on these lines already is given back as it is: exact labels stay exact.
 
 mod balconies;
 mod bands;
 mod boxes;
+mod doors;
 mod paint;
 
 use std::collections::BTreeSet;
@@ -30,6 +32,7 @@ use crate::LabelGrid;
 use balconies::{Balconies, balconies};
 use bands::bands;
 use boxes::{Box4, behind_balconies, boxes, clusters, filled, middle, overlap, without_specks};
+use doors::on_the_ground;
 use paint::paint;
 
 /// A column has windows on this share of the floors.
@@ -67,7 +70,8 @@ pub struct Lattice {
     /// For each row the columns that have a window, then the loose ones.
     windows: Vec<Vec<bool>>,
     balconies: Vec<Balconies>,
-    largest_door: Option<Box4>,
+    /// The doors on the ground, the largest last.
+    doors: Vec<Box4>,
     /// True if each window of the picture is as its row and its column say.
     exact: bool,
 }
@@ -108,21 +112,19 @@ impl Lattice {
         };
         let spans = middles(&columns, &whole, |b| b.x);
         let balconies = balconies(&on_walls, &rows, &spans, width);
-        let doors = of("door");
+        let found_doors = of("door");
         let below_windows = |b: &Box4| {
             rows.first()
                 .is_some_and(|row| 2.0 * b.y[1] <= row[0] + row[1])
         };
-        let windowless_ground = doors.iter().chain(&of("shop")).any(below_windows);
+        let windowless_ground = found_doors.iter().chain(&of("shop")).any(below_windows);
         let on = [&columns, &loose]
             .map(|groups| groups.iter().map(|g| floors_of(g)).collect::<Vec<_>>());
         let running = balconies.iter().enumerate();
         let running = running.filter(|(_, on)| matches!(on, Balconies::Running(_)));
-        let largest_door = doors
-            .into_iter()
-            .max_by(|a, b| a.area().total_cmp(&b.area()));
+        let doors = on_the_ground(found_doors);
         Self {
-            door: largest_door.map(|door| place(&door, width)),
+            door: doors.last().map(|door| place(door, width)),
             running: running
                 .map(|(row, _)| row + usize::from(windowless_ground))
                 .collect(),
@@ -144,7 +146,7 @@ impl Lattice {
             columns: spans,
             windowless_ground,
             balconies,
-            largest_door,
+            doors,
             rows,
         }
     }
@@ -194,9 +196,11 @@ pub fn on_lattice(grid: &LabelGrid) -> LabelGrid {
         let all = lattice.balconies.iter().flat_map(Balconies::boxes);
         painted.extend(all.map(|b| (label, *b)));
     }
-    if let (Some(label), Some(door)) = (number(grid, "door"), lattice.largest_door) {
-        let y = [0.0, door.y[1].min(height)];
-        painted.push((label, Box4 { x: door.x, y }));
+    if let Some(label) = number(grid, "door") {
+        painted.extend(lattice.doors.iter().map(|door| {
+            let y = [0.0, door.y[1].min(height)];
+            (label, Box4 { x: door.x, y })
+        }));
     }
     paint(grid, &painted)
 }

@@ -167,3 +167,27 @@ fn windows_of_a_stairwell_stay_between_the_floors() {
     );
     assert_eq!(found(&clean, "window").len(), 17);
 }
+
+#[test]
+fn every_door_on_the_ground_stays() {
+    let mut boxes = vec![
+        (2, [10, 26, 0, 30]),
+        (2, [70, 84, 2, 30]),
+        (2, [130, 148, 0, 33]),
+        // Above the ground, and a speck.
+        (2, [40, 56, 90, 118]),
+        (2, [100, 104, 0, 4]),
+    ];
+    for (column, floor) in (0..3).flat_map(|c| (0..2).map(move |f| (c, f))) {
+        let (x, y) = (20 + 50 * column, 40 + 26 * floor);
+        boxes.push((1, [x, x + 14 + usize::from(column + floor == 0), y, y + 18]));
+    }
+    let clean = on_lattice(&painted(&boxes));
+    let doors = found(&clean, "door");
+    let expected = [
+        [10.0, 26.0, 0.0, 30.0],
+        [70.0, 84.0, 0.0, 30.0],
+        [130.0, 148.0, 0.0, 33.0],
+    ];
+    assert_eq!(doors, expected);
+}
