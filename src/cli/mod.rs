@@ -8,6 +8,7 @@ mod cleaning;
 mod data;
 mod documents;
 mod facade;
+mod given;
 mod grammar;
 mod logic;
 mod model;

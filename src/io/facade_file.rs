@@ -9,8 +9,8 @@ use super::nearest_colour::NearestColours;
 use super::packed::{extension, read_bytes};
 use super::pixels::JPEG_MAGIC;
 use super::{
-    LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, json, label_image, label_text,
-    labelme, pixels,
+    LabelMap, annotation_xml, cmp_xml, coco, draw, facade_json, json, json_kind, label_image,
+    label_text, labelme, pixels,
 };
 use edifice_base::file::write_atomic;
 use edifice_base::{Error, Result};
@@ -23,7 +23,7 @@ const CMP_SIDE: f64 = 1000.0;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadOptions {
     /// Meaning of colours and numbers in label images and text matrices; without it those of ECP,
-    /// Graz and CMP are known.
+    /// Graz and CMP are known in images, and numbers in text matrices are labels themselves.
     pub label_map: Option<LabelMap>,
     /// True if a colour of an image that the label map does not name takes the label of the nearest colour; otherwise
     /// it is an error. JPEG images are read only so.
@@ -265,9 +265,10 @@ fn size_beside(path: &Path, options: &ReadOptions) -> Result<Option<(f64, f64)>>
 /// in the colours of ECP), `.txt` (a matrix of labels).
 ///
 /// # Errors
-/// [`Error::Option`] for another extension; [`Error::Content`] when a label cannot stand in a matrix;
+/// [`Error::Option`] for another extension, and for an ending of other files, such as `.grammar.json`; [`Error::Content`] when a label cannot stand in a matrix;
 /// [`Error::Io`] when the file cannot be written.
 pub fn write_facade(facade: &Facade, path: &Path) -> Result<()> {
+    json_kind::check(path, "facade")?;
     let extension = path
         .extension()
         .unwrap_or_default()

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::packed::extension;
-use super::{grammar_cga, grammar_json, read_bytes};
+use super::{grammar_cga, grammar_json, json_kind, read_bytes};
 use edifice_base::{Error, Result};
 use edifice_grammar::Grammar;
 
@@ -31,13 +31,24 @@ pub fn read_grammar(path: &Path) -> Result<Grammar> {
 /// Writes a grammar in the format that the extension asks for.
 ///
 /// # Errors
-/// [`Error::Option`] for an extension other than `.json` and `.cga`; [`Error::Io`] when the file
-/// cannot be written.
+/// As [`written_as_json`]; [`Error::Io`] when the file cannot be written.
 pub fn write_grammar(grammar: &Grammar, path: &Path) -> Result<()> {
+    match written_as_json(path)? {
+        true => grammar_json::write(grammar, path),
+        false => grammar_cga::write(grammar, path),
+    }
+}
+
+/// True if a grammar of this name is written as JSON, false if as CGA.
+///
+/// # Errors
+/// [`Error::Option`] for another extension, and for an ending of other files, such as `.library.json`.
+pub fn written_as_json(path: &Path) -> Result<bool> {
+    json_kind::check(path, "grammar")?;
     let written = path.extension().unwrap_or_default().to_string_lossy();
     match written.to_lowercase().as_str() {
-        "json" => grammar_json::write(grammar, path),
-        "cga" => grammar_cga::write(grammar, path),
+        "json" => Ok(true),
+        "cga" => Ok(false),
         _ => {
             let path = path.display().to_string();
             let message =

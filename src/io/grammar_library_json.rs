@@ -31,7 +31,7 @@ use edifice_shape::Axis;
 use serde::{Deserialize, Serialize};
 
 use super::json::{check_header, parse_json};
-use super::{read_bytes, write_atomic};
+use super::{json_kind, read_bytes, write_atomic};
 
 /// The value of the key `format` of a library.
 pub const FORMAT: &str = "edifice/grammar-library";
@@ -204,8 +204,9 @@ fn placed(path: &Path, error: LibraryError) -> Error {
 /// Writes a library, whole or not at all.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be written.
+/// [`Error::Option`] for an ending of other files, such as `.facade.json`; [`Error::Io`] when the file cannot be written.
 pub fn write(library: &Library, path: &Path) -> Result<()> {
+    json_kind::check(path, "library")?;
     write_atomic(path, to_string(library)?.as_bytes())
 }
 

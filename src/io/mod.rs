@@ -27,6 +27,7 @@ mod grammar_file;
 pub mod grammar_json;
 pub mod grammar_library_json;
 pub mod json;
+mod json_kind;
 pub mod label_image;
 pub mod label_map;
 pub mod label_text;
@@ -51,7 +52,7 @@ pub use edifice_base::file::write_atomic;
 pub use facade_file::{
     ReadOptions, Source, read_facade, read_label_grid, read_noted, read_source, write_facade,
 };
-pub use grammar_file::{read_grammar, write_grammar};
+pub use grammar_file::{read_grammar, write_grammar, written_as_json};
 pub use label_map::LabelMap;
 pub use packed::{extension, read_bytes};
 

@@ -8,6 +8,7 @@ use edifice_grammar::{Derivation, Grammar, check};
 use edifice_io::{read_grammar, write_atomic, write_facade};
 use edifice_shape::Facade;
 
+use crate::given::Given;
 use crate::print::{self, Json};
 
 /// Options of `edifice grammar derive`.
@@ -27,8 +28,10 @@ frames, and repeats fill the space. Absolute sizes give way last and in proporti
 Edges are aligned, and terminals that are equal at the grammar's own size become equal again;
 --no-align leaves them where the rules put them.
 In a stochastic grammar the seed picks among the rules of each symbol.
-A library (grammar infer --sizes free) is written as stochastic rules of CGA with attributes.")]
+A library (grammar infer --sizes free) is written as stochastic rules of CGA with attributes; only -o and --json are for it.")]
 pub(crate) struct Args {
+    #[command(flatten)]
+    given: Given,
     /// Grammar to read: .grammar.json or .cga, or a .library.json to write as .cga, also as .gz
     grammar: PathBuf,
     /// Width to derive at, in the grammar's unit [default: its own]
@@ -59,10 +62,19 @@ pub(crate) struct Args {
     json: Json,
 }
 
+/// The options that say how a facade is derived, not how a library is written.
+const OF_GRAMMARS: [&str; 7] = [
+    "width", "height", "seed", "facade", "rules", "no_align", "bands",
+];
+
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<()> {
     let bytes = edifice_io::read_bytes(&args.grammar)?;
     if edifice_io::grammar_library_json::is_library(&bytes) {
+        args.given.refuse(
+            &OF_GRAMMARS,
+            "is not for a library; `edifice grammar draw` makes facades of it",
+        )?;
         return super::library::derive(&args.grammar, &bytes, &args.output, &args.json);
     }
     let facade = derive(args)?;

@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::choice::{Choice, one_of};
 use crate::cleaning::Cleaning;
+use crate::given::Given;
 use crate::print;
 use crate::reading::{self, Reading};
 use crate::tolerance;
@@ -30,9 +31,12 @@ use crate::tolerance;
 
 Several facades give one joint grammar, with the rules that they share written once. With --sizes free, sizes and the
 counts of repeats are parameters of the rules, so that different facades share them: a library, which draws new facades
-and tells how like them others are.
+and tells how like them others are. No search makes it: --method, --no-protection and, without --tolerance, --ops, --seed
+and --iterations are refused.
 Without -o the grammar is listed on standard output.")]
 pub(crate) struct Args {
+    #[command(flatten)]
+    given: Given,
     /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles or annotations (.xml); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
@@ -106,6 +110,7 @@ const METHODS: &[Choice<Solver>] = &[
 /// Runs the command.
 pub(super) fn run(args: &Args) -> Result<()> {
     let costs = Costs::of(args.split_cost, args.repeat_cost);
+    check(args)?;
     let facades = read(args, costs)?;
     if args.sizes == Sizes::Free {
         return super::library::infer(&facades, &costs, args.output.as_deref(), args.json);
@@ -122,6 +127,23 @@ pub(super) fn run(args: &Args) -> Result<()> {
             .try_for_each(|line| print::line(line))?,
     }
     report(args, &evaluation, &found, seconds)
+}
+
+/// Refuses options that a library does not ask, and a file that cannot hold a grammar.
+fn check(args: &Args) -> Result<()> {
+    match (args.sizes, &args.output) {
+        (Sizes::Fixed, Some(path)) => io::written_as_json(path).map(drop),
+        (Sizes::Fixed, None) => Ok(()),
+        (Sizes::Free, _) => {
+            let reason = "is not for --sizes free, which searches no grammar";
+            args.given.refuse(&["method", "no_protection"], reason)?;
+            // What retiling is priced with.
+            match args.tolerance {
+                Some(_) => Ok(()),
+                None => args.given.refuse(&["ops", "seed", "iterations"], reason),
+            }
+        }
+    }
 }
 
 fn read(args: &Args, costs: Costs) -> Result<Vec<Facade>> {

@@ -269,6 +269,60 @@ fn combine_names_the_grammar_that_has_choices() {
 }
 
 #[test]
+fn options_that_say_nothing_and_names_of_other_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let facade = fig9().replace(".cga", ".facade.json");
+    let refused = |arguments: &[&str], output: &str, expected: &str| {
+        let output = at(output);
+        let (code, _, err) = edifice(&[arguments, &["-o", &output]].concat());
+        assert_eq!(code, 1, "{err}");
+        assert!(err.contains(expected), "{err}");
+        assert!(!std::path::Path::new(&output).exists());
+    };
+    let free = ["infer", &facade, "--sizes", "free"];
+    for option in [
+        &["--method", "greedy"][..],
+        &["--ops", "split"],
+        &["--seed", "0"],
+        &["--iterations", "9"],
+        &["--no-protection"],
+    ] {
+        let expected = format!("{}: is not for --sizes free", option[0]);
+        refused(&[&free[..], option].concat(), "a.library.json", &expected);
+    }
+    refused(&free, "a.facade.json", "expected .library.json");
+    refused(&free[..2], "a.library.json", "expected .grammar.json");
+    refused(&free[..2], "a.facade.json", "expected .grammar.json");
+    refused(
+        &["derive", &fig9()],
+        "a.grammar.json",
+        "expected .facade.json",
+    );
+    let library = at("l.library.json");
+    let (code, _, err) = edifice(&[&free[..], &["-o", &library]].concat());
+    assert_eq!(code, 0, "{err}");
+    for option in [
+        &["--width", "3"][..],
+        &["--height", "3"],
+        &["--seed", "0"],
+        &["--facade", "wu"],
+        &["--rules"],
+        &["--no-align"],
+        &["--bands"],
+    ] {
+        let expected = format!("{}: is not for a library", option[0]);
+        refused(
+            &[&["derive", &library], option].concat(),
+            "l.cga",
+            &expected,
+        );
+    }
+    let (code, _, err) = edifice(&["derive", &library, "-o", &at("l.cga")]);
+    assert_eq!(code, 0, "{err}");
+}
+
+#[test]
 fn quiet_leaves_results_and_errors() {
     let facade = fig9().replace(".cga", ".facade.json");
     let (_, out, message) = edifice(&["infer", &facade]);

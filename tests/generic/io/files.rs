@@ -128,7 +128,7 @@ fn numbers_below_zero_are_named_by_the_map_or_refused() {
         &["grammar", "infer"],
         &["logic", "fit"],
     ] {
-        let rest = ["a.txt", "--label-map", "some.json", "-o", "c.facade.json"];
+        let rest = ["a.txt", "--label-map", "some.json", "-o", "c.json"];
         let assert = edifice(folder, &[command, &rest].concat()).code(1);
         let expected = "a.txt: line 1, entry 1: unknown number -1: the label map does not name it";
         assert!(stderr(&assert).contains(expected), "{}", stderr(&assert));
