@@ -44,8 +44,9 @@ pub(crate) enum Command {
   edifice facade convert datasets/examples/instances.json --image house_7 -o house_7.facade.json
 
 A label map is a JSON file: {\"window\": [255, 0, 0], \"wall\": 2, \"unlabelled\": -1}
-Without one, the colours of the ECP and Graz databases and the numbers of the CMP database are known.
-A colour or number that the map does not name is an error. With --nearest-colour such a colour is
+Without one, of images the colours of the ECP and Graz databases and the numbers of the CMP database are known.
+A colour or number that the map does not name is an error. Numbers of text matrices are labels themselves
+unless there is a map, with a warning where nothing else stands in the matrix. With --nearest-colour such a colour is
 read as the nearest one of the map (without a map: of ECP and Graz), and the largest distance is told.")]
     Convert(Convert),
     /// Learn from whole facades how partial ones are completed (Fan et al. 2014).

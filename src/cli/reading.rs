@@ -40,5 +40,14 @@ pub(crate) fn source(path: &Path, options: &ReadOptions) -> Result<Source> {
     if let Some(nearest) = nearest {
         print::message(&format!("note: {}: {nearest}", path.display()));
     }
+    if let (Source::Picture(grid), None) = (&source, &options.label_map)
+        && grid.labels.iter().all(|label| label.parse::<f64>().is_ok())
+    {
+        let numbers = grid.labels.join(", ");
+        print::message(&format!(
+            "warning: {}: the labels are numbers ({numbers}); --label-map says what they mean",
+            path.display()
+        ));
+    }
     Ok(source)
 }

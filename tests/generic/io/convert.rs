@@ -1,16 +1,16 @@
-//! `edifice facade convert` from outside: formats, exit codes, messages, nothing half-written.
+//! `edifice facade convert` from outside: formats, exit codes, messages, nothing half-written; and what else reads facades as it does.
 
 use std::path::Path;
 
 use assert_cmd::Command;
 
-fn convert(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+fn edifice(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
     let mut command = Command::cargo_bin("edifice").unwrap();
-    command
-        .current_dir(folder)
-        .args(["facade", "convert"])
-        .args(arguments)
-        .assert()
+    command.current_dir(folder).args(arguments).assert()
+}
+
+fn convert(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+    edifice(folder, &[&["facade", "convert"], arguments].concat())
 }
 
 fn stderr(assert: &assert_cmd::assert::Assert) -> String {
@@ -106,4 +106,31 @@ fn help_shows_an_example() {
         text.contains("Examples:\n  edifice facade convert datasets/examples/facade.png"),
         "{text}"
     );
+}
+
+#[test]
+fn numbers_without_a_map_are_labels_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    write("a.txt", "2 2 3\n-1 2 3\n");
+    write("map.json", r#"{"void": -1, "wall": 2, "door": 3}"#);
+    write("named.txt", "wall 2 3\nwall 2 3\n");
+    for command in [
+        ["facade", "convert"],
+        ["grammar", "infer"],
+        ["logic", "fit"],
+    ] {
+        let told = |rest: &[&str]| {
+            let rest = [&command[..], rest, &["-o", "o.json"]].concat();
+            stderr(&edifice(folder, &rest).success())
+        };
+        let text = told(&["a.txt"]);
+        let expected =
+            "warning: a.txt: the labels are numbers (-1, 2, 3); --label-map says what they mean";
+        assert!(text.contains(expected), "{text}");
+        for fine in [&["a.txt", "--label-map", "map.json"][..], &["named.txt"]] {
+            assert!(!told(fine).contains("the labels are numbers"), "{fine:?}");
+        }
+    }
 }
