@@ -25,6 +25,7 @@ use super::cleaning::Cleaning;
 use super::print::{self, Json};
 use super::reading::{self, Reading};
 use super::tolerance;
+use super::walls::Walls;
 
 /// Commands.
 #[derive(Subcommand)]
@@ -79,9 +80,11 @@ pub(crate) struct Convert {
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
+    walls: Walls,
+    #[command(flatten)]
     cleaning: Cleaning,
     /// Keep only elements (windows, doors, ...), not the wall.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "wall")]
     elements: bool,
     /// Make nearly equal sizes equal and nearly aligned edges aligned, moving no edge further than
     /// this, in the unit of the facade. What is equal stays equal; applied again it changes nothing more.
@@ -112,6 +115,10 @@ pub(crate) fn run(command: Command) -> Result<()> {
 fn convert(options: &Convert) -> Result<()> {
     let path = &options.input;
     let source = reading::source(path, &options.reading.options()?)?;
+    let source = match options.cleaning.is_asked() || options.tolerance.is_some() {
+        true => options.walls.tiling(source, path)?,
+        false => options.walls.source(source, path)?,
+    };
     let source = options.cleaning.source(source, path)?;
     if let Some(share) = options.tolerance {
         let facade = tolerance::retiled(source, path, share, &Default::default())?;

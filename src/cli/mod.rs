@@ -19,6 +19,7 @@ mod reproduce;
 mod studio;
 mod sweep;
 mod tolerance;
+mod walls;
 
 use std::process::ExitCode;
 

@@ -19,6 +19,7 @@ use crate::given::Given;
 use crate::print;
 use crate::reading::{self, Reading};
 use crate::tolerance;
+use crate::walls::Walls;
 
 /// Options of `edifice grammar infer`.
 #[derive(clap::Args)]
@@ -37,7 +38,8 @@ Without -o the grammar is listed on standard output.")]
 pub(crate) struct Args {
     #[command(flatten)]
     given: Given,
-    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles or annotations (.xml); text also as .gz
+    /// Facades: .facade.json, label image (.png), matrix of labels (.txt), CMP rectangles (.xml), with --wall also boxes
+    /// of annotations (.xml, .json); text also as .gz
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<PathBuf>,
     /// Method of search
@@ -69,6 +71,8 @@ pub(crate) struct Args {
     no_protection: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    walls: Walls,
     #[command(flatten)]
     cleaning: Cleaning,
     /// Grammar to write: .grammar.json or .cga; with --sizes free also .library.json
@@ -156,16 +160,12 @@ fn read(args: &Args, costs: Costs) -> Result<Vec<Facade>> {
         ..Settings::default()
     };
     let checked = |path: &PathBuf| {
-        let source = args
-            .cleaning
-            .source(reading::source(path, &options)?, path)?;
+        let source = args.walls.tiling(reading::source(path, &options)?, path)?;
+        let source = args.cleaning.source(source, path)?;
         let facade = match args.tolerance {
             Some(share) => tolerance::retiled(source, path, share, &prices)?,
             None => source.facade(path)?,
         };
-        facade
-            .check_tiling()
-            .map_err(|error| Error::content(path, error))?;
         edifice_shape::splittable(&facade).map_err(|error| Error::content(path, error))?;
         Ok(facade)
     };

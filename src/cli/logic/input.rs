@@ -15,15 +15,18 @@ use crate::choice::Choice;
 use crate::cleaning::Cleaning;
 use crate::print;
 use crate::reading::{self, Reading};
+use crate::walls::Walls;
 
 /// Facades to read.
 #[derive(clap::Args)]
 pub(super) struct Facades {
-    /// Facade files (.png, .facade.json, .xml, .txt, text also as .gz), and folders of .png and .facade.json files.
+    /// Facade files (.png, .facade.json, .xml, .txt, text also as .gz; boxes with --wall), and folders of .png and .facade.json files.
     #[arg(value_name = "IN")]
     pub inputs: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    walls: Walls,
     #[command(flatten)]
     cleaning: Cleaning,
 }
@@ -36,7 +39,10 @@ impl Facades {
         let mut grids = Vec::new();
         for input in &self.inputs {
             for path in files(input)? {
-                grids.push(reading::source(&path, &options)?.label_grid(&path)?);
+                let source = self
+                    .walls
+                    .tiling(reading::source(&path, &options)?, &path)?;
+                grids.push(source.label_grid(&path)?);
             }
         }
         match self.cleaning.is_asked() {

@@ -18,6 +18,7 @@ fn stderr(assert: &assert_cmd::assert::Assert) -> String {
 }
 
 const MATRIX: &str = "wall wall wall wall\nwall window window wall\nwall wall wall wall\n";
+const VOC: &[u8] = include_bytes!("../../../fuzz/seeds/annotation_xml/voc.xml");
 
 #[test]
 fn every_format_leads_to_every_other() {
@@ -133,4 +134,51 @@ fn numbers_without_a_map_are_labels_with_a_warning() {
             assert!(!told(fine).contains("the labels are numbers"), "{fine:?}");
         }
     }
+}
+
+#[test]
+fn boxes_on_a_wall_are_tilings_where_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("v.xml"), VOC).unwrap();
+    for command in [["grammar", "infer"], ["logic", "fit"]] {
+        let arguments = [command[0], command[1], "v.xml", "-o", "v.json"];
+        let assert = edifice(folder, &arguments).code(1);
+        let text = stderr(&assert);
+        assert!(text.contains("; --wall makes a tiling of boxes"), "{text}");
+        edifice(folder, &[&arguments[..], &["--wall"]].concat()).success();
+    }
+    let convert = [
+        "facade",
+        "convert",
+        "v.xml",
+        "--wall",
+        "-o",
+        "w.facade.json",
+    ];
+    edifice(folder, &convert).success();
+    let facade = edifice::io::facade_json::read(&folder.join("w.facade.json")).unwrap();
+    assert_eq!(facade.check_tiling(), Ok(()));
+    assert_eq!((facade.width, facade.unit.as_str()), (40.0, "px"));
+    // The picture that `convert` draws says the same.
+    edifice(folder, &["facade", "convert", "v.xml", "-o", "v.txt"]).success();
+    edifice(
+        folder,
+        &["facade", "convert", "w.facade.json", "-o", "w.txt"],
+    )
+    .success();
+    let [drawn, tiled] = ["v.txt", "w.txt"].map(|n| std::fs::read(folder.join(n)).unwrap());
+    assert!(drawn == tiled);
+    // What is cleaned must be a picture.
+    let clean = [
+        "facade",
+        "convert",
+        "v.xml",
+        "--clean",
+        "-o",
+        "c.facade.json",
+    ];
+    let text = stderr(&edifice(folder, &clean).code(1));
+    assert!(text.contains("; --wall makes a tiling of boxes"), "{text}");
+    edifice(folder, &[&clean[..], &["--wall"]].concat()).success();
 }
