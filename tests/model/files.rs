@@ -111,6 +111,17 @@ fn broken_xmlbif_is_refused_by_place() {
     assert!(changed("<FOR>asia", "<FOR>asi").contains("no variable"));
     assert!(changed("<GIVEN>asia", "<GIVEN>tub").contains("tub"));
     assert!(changed("<OUTCOME>yes", "<OUTCOME>&nobody;").contains("nobody"));
+    for twice in ["<NAME>asia", "<FOR>asia", "<TABLE>0.01 0.99"] {
+        let (element, _) = twice.split_once('>').unwrap();
+        let said = changed(twice, &format!("{twice}</{}>{twice}", &element[1..]));
+        assert!(said.contains(&format!("a second {element}>")), "{said}");
+    }
+    // Definitions may come first, and a mark of the order of bytes.
+    let (start, variables) = xml.split_at(xml.find("<VARIABLE").unwrap());
+    let (variables, definitions) = variables.split_at(variables.find("<DEFINITION").unwrap());
+    let (definitions, end) = definitions.split_at(definitions.find("</NETWORK").unwrap());
+    let other = format!("\u{feff}{start}{definitions}{variables}{end}");
+    assert_eq!(Network::from_xmlbif(&other).unwrap(), whole);
 }
 
 #[test]

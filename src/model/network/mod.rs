@@ -36,6 +36,7 @@
 
 mod approximate;
 mod bif;
+mod bif_reader;
 mod check;
 mod dot;
 mod evidence;
@@ -204,6 +205,24 @@ impl Network {
     /// [`ModelError::Unknown`].
     pub fn categories(&self, name: &str) -> Result<&[String], ModelError> {
         Ok(&self.nodes[self.find(name)?].categories)
+    }
+
+    /// True if a real vector is among a variable's ancestors: then its probability has no closed form unless that is known.
+    ///
+    /// # Errors
+    /// [`ModelError::Unknown`].
+    pub fn depends_on_numbers(&self, name: &str) -> Result<bool, ModelError> {
+        let mut open = self.nodes[self.find(name)?].parents.clone();
+        let mut seen = HashSet::new();
+        while let Some(n) = open.pop() {
+            if !self.nodes[n].is_discrete() {
+                return Ok(true);
+            }
+            if seen.insert(n) {
+                open.extend(&self.nodes[n].parents);
+            }
+        }
+        Ok(false)
     }
 
     /// Names of a variable's parents.

@@ -1,6 +1,6 @@
 //! Discrete networks in XMLBIF 0.3 (Cozman 1998), as GeNIe, WEKA and pyAgrum read and write it.
 //!
-//! In `<TABLE>` the variable of `<FOR>` varies fastest, and the first `<GIVEN>` slowest. Properties, names of networks and
+//! Variables and definitions come in any order; what is stated twice is refused. In `<TABLE>` the variable of `<FOR>` varies fastest, and the first `<GIVEN>` slowest. Properties, names of networks and
 //! comments are skipped. Rows that are off 1 by rounding (less than 1e-3) are normalised.
 
 use quick_xml::Reader;
@@ -13,9 +13,9 @@ use super::{Cpd, Network, Stated, Variable};
 /// The content of a `<DEFINITION>`.
 #[derive(Default)]
 struct Definition {
-    variable: String,
+    variable: Option<String>,
     given: Vec<String>,
-    table: Vec<f64>,
+    table: Option<Vec<f64>>,
 }
 
 impl Network {
@@ -24,11 +24,13 @@ impl Network {
     /// # Errors
     /// [`ModelError::Corrupt`] with the byte, and those of [`Network::new`].
     pub fn from_xmlbif(text: &str) -> Result<Self, ModelError> {
-        let mut reader = Reader::from_str(text);
+        let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));
         let mut open: Vec<String> = Vec::new();
         let mut content = String::new();
         let mut variables: Vec<Variable> = Vec::new();
         let mut definition = Definition::default();
+        // Variables may come after their definitions.
+        let mut definitions = Vec::new();
         loop {
             let at = reader.buffer_position();
             let wrong = |problem: String| ModelError::corrupt(format!("byte {at}"), problem);
@@ -58,6 +60,9 @@ impl Network {
                     match (within, name.as_str()) {
                         ("VARIABLE", "NAME") => {
                             if let Some(last) = variables.last_mut() {
+                                if !last.name.is_empty() {
+                                    return Err(wrong(twice("NAME", &last.name)));
+                                }
                                 last.name = word;
                             }
                         }
@@ -66,14 +71,21 @@ impl Network {
                                 last.categories.push(word);
                             }
                         }
-                        ("DEFINITION", "FOR") => definition.variable = word,
+                        ("DEFINITION", "FOR") => {
+                            if let Some(before) = definition.variable.replace(word) {
+                                return Err(wrong(twice("FOR", &before)));
+                            }
+                        }
                         ("DEFINITION", "GIVEN") => definition.given.push(word),
                         ("DEFINITION", "TABLE") => {
-                            definition.table = numbers(&word).map_err(&wrong)?;
+                            let table = numbers(&word).map_err(&wrong)?;
+                            if definition.table.replace(table).is_some() {
+                                let of = definition.variable.unwrap_or_default();
+                                return Err(wrong(twice("TABLE", &of)));
+                            }
                         }
                         (_, "DEFINITION") => {
-                            let definition = std::mem::take(&mut definition);
-                            define(&mut variables, definition).map_err(&wrong)?;
+                            definitions.push((at, std::mem::take(&mut definition)));
                         }
                         _ => {}
                     }
@@ -86,6 +98,10 @@ impl Network {
         let end = |problem: String| ModelError::corrupt("end", problem);
         if let Some(name) = open.last() {
             return Err(end(format!("the text ends inside <{name}>")));
+        }
+        for (at, definition) in definitions {
+            let wrong = |problem| ModelError::corrupt(format!("byte {at}"), problem);
+            define(&mut variables, definition).map_err(wrong)?;
         }
         if let Some(v) = variables.iter().find(|v| v.stated == Stated::Open) {
             return Err(end(format!("`{}` has no <DEFINITION>", v.name)));
@@ -154,13 +170,15 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split_whitespace().map(number).collect()
 }
 
+/// The problem of an element that stands twice.
+fn twice(element: &str, of: &str) -> String {
+    format!("a second <{element}> for `{of}`")
+}
+
 /// Gives a variable its parents and its table.
 fn define(variables: &mut [Variable], definition: Definition) -> Result<(), String> {
-    let Definition {
-        variable,
-        given,
-        mut table,
-    } = definition;
+    let (given, variable) = (definition.given, definition.variable.unwrap_or_default());
+    let mut table = definition.table.unwrap_or_default();
     let find = |name: &String| variables.iter().position(|v| v.name == *name);
     let own =
         find(&variable).ok_or_else(|| format!("<FOR> names `{variable}`, which is no variable"))?;

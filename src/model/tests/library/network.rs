@@ -335,3 +335,54 @@ fn bad_networks_are_named() {
     let strange = asia.marginals(&Evidence::new().is("lung", "maybe"));
     assert!(matches!(strange, Err(ModelError::UnseenCategory { column, .. }) if column == "lung"));
 }
+
+#[test]
+fn blocks_come_in_any_order_and_nothing_twice() {
+    let blocks = [
+        "network n {\n}\n",
+        "variable a { type discrete [ 2 ] { n, y }; }\n",
+        "variable b { type discrete [ 2 ] { n, y }; }\n",
+        "probability ( a ) { table 0.25, 0.75; }\n",
+        "probability ( b | a ) { (n) 0.5, 0.5; (y) 0.125, 0.875; }\n",
+    ];
+    let plain = Network::from_bif(&blocks.concat()).unwrap();
+    let order = [0, 4, 1, 3, 2].map(|i| blocks[i]).concat();
+    // A byte order mark, as editors write it, is none of the words.
+    assert_eq!(
+        Network::from_bif(&format!("\u{feff}{order}")).unwrap(),
+        plain
+    );
+    let text = blocks.concat();
+    for (from, to, said) in [
+        (
+            "{ table 0.25, 0.75;",
+            "{ table 0.25, 0.75; table 0.5, 0.5;",
+            "line 5: `a` has",
+        ),
+        (
+            "(y) 0.125",
+            "(n) 0.25, 0.75; (y) 0.125",
+            "line 6: `(n)` has probabilities already",
+        ),
+        (
+            "(n) 0.5, 0.5;",
+            "default 0.5, 0.5; default 0.1, 0.9;",
+            "line 6: `b` has `default` twice",
+        ),
+        (
+            "variable b { ",
+            "variable b { type discrete [ 2 ] { y, n }; ",
+            "line 4: `b` has its",
+        ),
+        (
+            "variable b ",
+            "variable a ",
+            "line 4: `a` is declared twice",
+        ),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text);
+        let error = Network::from_bif(&changed).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+}
