@@ -130,7 +130,8 @@ impl FittedTable {
                     break;
                 }
                 let mut rng = stream(seed, "model/complete", row as u64);
-                let draws = model.complete(&data.select(&[row]), 1, &mut rng)?;
+                let draws = model.complete(&data.select(&[row]), 1, &mut rng);
+                let draws = draws.map_err(|e| e.in_row(row))?;
                 let (header, drawn) = texts(&draws);
                 names = header;
                 completed.extend(drawn);
@@ -175,6 +176,9 @@ impl FittedTable {
             group.columns.retain(|column| header.contains(column));
         }
         schema.groups.retain(|group| !group.columns.is_empty());
+        if schema.groups.is_empty() {
+            return Err(failed("the table has none of the model's columns"));
+        }
         Ok(schema.read(header, rows).map_err(failed)?.table)
     }
 }

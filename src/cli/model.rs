@@ -1,5 +1,6 @@
 //! Models on the command line: Bayesian networks, models of tables, and the models of papers that have a [`Shown`].
 
+mod completed;
 pub(crate) mod data;
 mod drawing;
 pub(crate) mod evaluate;

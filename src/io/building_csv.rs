@@ -1,5 +1,6 @@
 //! Houses as a CSV table of text cells, plain or gzipped (`*.csv`, `*.csv.gz`).
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::packed::unpacked;
@@ -13,12 +14,35 @@ const MOST_CELLS: usize = 1 << 24;
 /// A CSV file: its header and its rows, all of the header's length.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextTable {
-    /// Names of the columns.
+    /// Names of the columns, without blanks around them.
     pub header: Vec<String>,
     /// Cells, row by row; numbers with points.
     pub rows: Vec<Vec<String>>,
+    /// The cells of columns of numbers with commas as the file has them, by the place of the column.
+    pub commas: BTreeMap<usize, Vec<String>>,
     /// A sentence for each way in which the file was not plain CSV: another separator, decimal commas, columns without a name.
     pub notes: Vec<String>,
+}
+
+impl TextTable {
+    /// Place of the column of this name, whatever blanks are around it.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.header.iter().position(|own| own == name.trim())
+    }
+
+    /// A cell, with points in numbers; empty where there is none.
+    pub fn cell(&self, row: usize, column: usize) -> &str {
+        let cell = self.rows.get(row).and_then(|cells| cells.get(column));
+        cell.map_or("", String::as_str)
+    }
+
+    /// A cell as the file has it, with commas in numbers.
+    pub fn written(&self, row: usize, column: usize) -> &str {
+        match self.commas.get(&column).and_then(|cells| cells.get(row)) {
+            Some(cell) => cell,
+            None => self.cell(row, column),
+        }
+    }
 }
 
 /// Reads a CSV file with a header line. The separator may be `;`, a tab or `|` as well, and numbers may have decimal commas; both are
@@ -66,15 +90,17 @@ pub fn parse(bytes: &[u8], path: &Path) -> Result<TextTable> {
     if rows.is_empty() {
         return Err(Error::content(path, "the table has no rows"));
     }
-    notes.extend(points(&header, &mut rows, mark, path)?);
+    let (more, commas) = points(&header, &mut rows, mark, path)?;
+    notes.extend(more);
     Ok(TextTable {
         header,
         rows,
+        commas,
         notes,
     })
 }
 
-/// Gives nameless columns a name, and refuses a name that stands twice.
+/// Takes blanks away from around names, gives nameless columns a name, and refuses a name that stands twice.
 fn names(header: &mut [String], notes: &mut Vec<String>, path: &Path) -> Result<()> {
     if header.iter().all(|name| name.trim().parse::<f64>().is_ok()) {
         notes.push(
@@ -83,7 +109,8 @@ fn names(header: &mut [String], notes: &mut Vec<String>, path: &Path) -> Result<
         );
     }
     for (i, name) in header.iter_mut().enumerate() {
-        if name.trim().is_empty() {
+        *name = name.trim().to_owned();
+        if name.is_empty() {
             *name = format!("column_{}", i + 1);
             notes.push(format!(
                 "column {} has no name: it is called `{name}`",
@@ -91,7 +118,7 @@ fn names(header: &mut [String], notes: &mut Vec<String>, path: &Path) -> Result<
             ));
         }
     }
-    let mut seen = std::collections::BTreeMap::new();
+    let mut seen = BTreeMap::new();
     for (i, name) in header.iter().enumerate() {
         if let Some(before) = seen.insert(name, i + 1) {
             let message = format!(

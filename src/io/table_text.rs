@@ -5,6 +5,7 @@
 //! points: decimal commas (`1,5`), thousands (`1,234` in a table separated by commas, `1.234,5` elsewhere). Where every such number could be either
 //! (`1,234` in a table separated by something else), the column is refused: the reader would guess.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use edifice_base::csv::MISSING;
@@ -215,8 +216,11 @@ fn commas(text: &str) -> Option<Commas> {
     })
 }
 
+/// Cells of columns by the place of the column.
+type Columns = BTreeMap<usize, Vec<String>>;
+
 /// Rewrites the numbers of columns that are written with commas; returns a sentence for each such column, and for each of which
-/// most known cells are numbers, but not all.
+/// most known cells are numbers, but not all; and the cells of rewritten columns as they were, by the place of the column.
 ///
 /// # Errors
 /// [`Error::Content`] for a column that could be read in two ways.
@@ -225,8 +229,9 @@ pub(crate) fn points(
     rows: &mut [Vec<String>],
     separator: u8,
     path: &Path,
-) -> Result<Vec<String>> {
+) -> Result<(Vec<String>, Columns)> {
     let mut notes = Vec::new();
+    let mut before = Columns::new();
     for (c, name) in header.iter().enumerate() {
         let cells = rows.iter().filter_map(|r| r.get(c)).map(|t| t.trim());
         let known: Vec<&str> = cells.filter(|t| !MISSING.contains(t)).collect();
@@ -255,6 +260,8 @@ pub(crate) fn points(
                 return Err(Error::content(path, message));
             }
         };
+        let cells = rows.iter().map(|r| r.get(c).cloned().unwrap_or_default());
+        before.insert(c, cells.collect());
         for cell in rows.iter_mut().filter_map(|r| r.get_mut(c)) {
             let text = cell.trim();
             if MISSING.contains(&text) {
@@ -273,7 +280,7 @@ pub(crate) fn points(
         };
         notes.push(format!("column `{name}`: numbers with {what}"));
     }
-    Ok(notes)
+    Ok((notes, before))
 }
 
 /// A sentence for a column of which so many known cells are numbers, if they are most of them: it will be read as categories or text.

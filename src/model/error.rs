@@ -2,14 +2,14 @@
 
 /// One variant per way to be wrong; each names the variable, and the row where there is one.
 ///
-/// Its text is a sentence for users. Rows count from 0 in the table that was given; a caller that looked at one row on its own
-/// says which it was ([`ModelError::in_row`]).
+/// Its text is a sentence for users, in which the first row is row 1. The fields count rows from 0 in the table that was given; a
+/// caller that looked at one row on its own says which it was ([`ModelError::in_row`]).
 ///
 /// # Examples
 /// ```
 /// use edifice_model::{ModelError, Table};
 /// let error = Table::new().real("width", [Some(9.5), Some(f64::INFINITY)]).unwrap_err();
-/// assert_eq!(error.to_string(), "column `width`, row 1: inf is not finite (declare it missing instead)");
+/// assert_eq!(error.to_string(), "column `width`, row 2: inf is not finite (declare it missing instead)");
 /// assert!(matches!(error.in_row(7), ModelError::NotFinite { row: 7, .. }));
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -47,7 +47,7 @@ pub enum ModelError {
         expected: usize,
     },
     /// A value that is neither finite nor declared missing.
-    #[error("column `{column}`, row {row}: {value} is not finite (declare it missing instead)")]
+    #[error("column `{column}`, row {}: {value} is not finite (declare it missing instead)", .row + 1)]
     NotFinite {
         /// The column.
         column: String,
@@ -71,7 +71,7 @@ pub enum ModelError {
         column: String,
     },
     /// A value that must be given is missing.
-    #[error("column `{column}`, row {row}: a value is needed here")]
+    #[error("column `{column}`, row {}: a value is needed here", .row + 1)]
     Missing {
         /// The column.
         column: String,
@@ -79,7 +79,7 @@ pub enum ModelError {
         row: usize,
     },
     /// A category that the variable does not have.
-    #[error("column `{column}`, row {row}: category `{category}` was not seen in training")]
+    #[error("column `{column}`, row {}: category `{category}` was not seen in training", .row + 1)]
     UnseenCategory {
         /// The column.
         column: String,
@@ -99,10 +99,10 @@ pub enum ModelError {
         expected: &'static str,
     },
     /// Evidence of probability zero.
-    #[error("row {row}: the evidence has probability zero (first contradiction at `{variable}`)")]
+    #[error("{}the evidence has probability zero (first contradiction at `{variable}`)", place(*.row))]
     Contradiction {
-        /// Row, from 0.
-        row: usize,
+        /// Row, from 0; `None` for evidence that is no row of a table.
+        row: Option<usize>,
         /// The variable at which the probability became zero.
         variable: String,
     },
@@ -183,7 +183,41 @@ impl ModelError {
                 row,
                 category,
             },
-            Self::Contradiction { variable, .. } => Self::Contradiction { row, variable },
+            Self::Contradiction { variable, .. } => Self::Contradiction {
+                row: Some(row),
+                variable,
+            },
+            other => other,
+        }
+    }
+
+    /// The row, from 0, of an error that has one.
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            Self::NotFinite { row, .. }
+            | Self::Missing { row, .. }
+            | Self::UnseenCategory { row, .. } => Some(*row),
+            Self::Contradiction { row, .. } => *row,
+            _ => None,
+        }
+    }
+
+    /// The same for a table that has the given rows of another, with the row of that one. Errors without a row, or with one that
+    /// is not there, stay as they are.
+    pub fn among(self, rows: &[usize]) -> Self {
+        match self.row().and_then(|row| rows.get(row)) {
+            Some(&row) => self.in_row(row),
+            None => self,
+        }
+    }
+
+    /// The same for evidence that a caller put into a row, where users gave none: a contradiction has no row then.
+    pub fn in_no_row(self) -> Self {
+        match self {
+            Self::Contradiction { variable, .. } => Self::Contradiction {
+                row: None,
+                variable,
+            },
             other => other,
         }
     }
@@ -195,4 +229,9 @@ impl ModelError {
             problem: problem.into(),
         }
     }
+}
+
+/// The row in words, before a sentence.
+fn place(row: Option<usize>) -> String {
+    row.map_or_else(String::new, |row| format!("row {}: ", row + 1))
 }

@@ -2,6 +2,7 @@
 
 #[path = "../common/cases.rs"]
 mod cases;
+mod cells;
 mod commands;
 mod files;
 mod fitted;

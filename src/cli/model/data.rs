@@ -1,14 +1,15 @@
 //! Tables and models of tables.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result, csv};
 use edifice_io::building_csv::{self, TextTable};
 use edifice_io::{json, read_bytes};
 use edifice_model::tables::Dataset;
-use edifice_model::tables::schema::{FORMAT, RELATED_VERSION, Schema, VERSION};
+use edifice_model::tables::schema::{FORMAT, RELATED_VERSION, Schema, SchemaError, VERSION};
 use edifice_model::tables::table_model::TableModel;
-use edifice_model::{Cell, Column, Table};
+use edifice_model::{Cell, Column, ModelError, Table};
 use serde_json::Value;
 
 use crate::print::{self, Json};
@@ -23,34 +24,48 @@ pub(crate) struct TableInput {
     pub schema: Option<PathBuf>,
 }
 
+/// The rows of a table that a schema keeps.
+pub(crate) struct Kept {
+    /// The rows.
+    pub data: Dataset,
+    /// Their places in the table, from 0.
+    pub rows: Vec<usize>,
+}
+
+impl Kept {
+    /// An error of a model, with the row of the table at `path` instead of the one among those kept.
+    pub(crate) fn at<'a>(&'a self, path: &'a Path) -> impl Fn(ModelError) -> Error + 'a {
+        |error| Error::content(path, error.among(&self.rows))
+    }
+}
+
 impl TableInput {
     /// Reads the table; the schema is returned besides.
-    pub(crate) fn read(&self) -> Result<(Dataset, Schema)> {
+    pub(crate) fn read(&self) -> Result<(Kept, Schema)> {
         let text = read_table(&self.table)?;
         let at = |e| Error::content(&self.table, e);
         let schema = match &self.schema {
             Some(path) => read_schema(path)?,
             None => Schema::guess(&text.header, &text.rows).map_err(at)?,
         };
-        let data = schema.read(&text.header, &text.rows).map_err(at)?;
-        Ok((data, schema))
+        Ok((kept(&schema, &text).map_err(at)?, schema))
     }
 
     /// As [`Self::read`], with the exact relations between columns in the schema, which are said: those of `known`, or else those
     /// that the schema states, or else those that are found. The columns that they determine are left out of the rows.
-    pub(crate) fn read_related(&self, known: Option<&Schema>) -> Result<(Dataset, Schema)> {
-        let (data, mut schema) = self.read()?;
+    pub(crate) fn read_related(&self, known: Option<&Schema>) -> Result<(Kept, Schema)> {
+        let (mut kept, mut schema) = self.read()?;
         match known {
             Some(known) => schema.relations.clone_from(&known.relations),
-            None => schema = schema.related(&data),
+            None => schema = schema.related(&kept.data),
         }
         for relation in schema.relations.iter().flatten() {
             print::message(&format!("exact relation: {}", relation.said()));
         }
-        let at = |e| Error::content(&self.table, e);
-        let relations = schema.relations().map_err(at)?;
-        let reduced = relations.reduce_dataset(&data).map_err(at)?;
-        Ok((reduced, schema))
+        let relations = schema.relations().map_err(kept.at(&self.table))?;
+        let reduced = relations.reduce_dataset(&kept.data);
+        kept.data = reduced.map_err(kept.at(&self.table))?;
+        Ok((kept, schema))
     }
 
     /// The guessed schema, of the columns that can be in one, with the relations found, and why other columns are left out, which is said.
@@ -91,20 +106,44 @@ pub(crate) fn read_model(path: &Path) -> Result<TableModel> {
     TableModel::from_json(text).map_err(|e| Error::content(path, e))
 }
 
-/// Reads a table by a model's schema. Of the schema's columns the table may lack some: they are missing.
-pub(crate) fn read_rows(model: &TableModel, path: &Path) -> Result<Dataset> {
-    rows(model, &read_table(path)?, path)
+/// The rows of a table by a schema.
+fn kept(schema: &Schema, text: &TextTable) -> std::result::Result<Kept, SchemaError> {
+    Ok(Kept {
+        data: schema.read(&text.header, &text.rows)?,
+        rows: schema.kept(&text.header, &text.rows)?,
+    })
 }
 
-/// The rows of a table that was read, by a model's schema; `path` names it in errors.
-pub(crate) fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Dataset> {
+/// The rows of a table that was read, by a model's schema; `path` names it in errors. Of the schema's columns the table may lack
+/// some, but not all: they are missing, which is said.
+pub(crate) fn rows(model: &TableModel, text: &TextTable, path: &Path) -> Result<Kept> {
     let mut schema = model.schema.clone();
+    let mut lacking = Vec::new();
     for group in &mut schema.groups {
-        group.columns.retain(|column| text.header.contains(column));
+        let (there, not) = std::mem::take(&mut group.columns)
+            .into_iter()
+            .partition(|column| text.column(column).is_some());
+        group.columns = there;
+        lacking.extend::<Vec<String>>(not);
     }
     schema.groups.retain(|group| !group.columns.is_empty());
-    let data = schema.read(&text.header, &text.rows);
-    data.map_err(|e| Error::content(path, e))
+    if schema.groups.is_empty() {
+        let message = format!(
+            "the table has none of the model's columns: {}",
+            lacking.join(", ")
+        );
+        return Err(Error::content(path, message));
+    }
+    say_hidden(&lacking);
+    kept(&schema, text).map_err(|e| Error::content(path, e))
+}
+
+/// Says which columns of a model a table lacks.
+pub(crate) fn say_hidden(names: &[impl AsRef<str>]) {
+    if !names.is_empty() {
+        let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+        print::message(&format!("hidden: {}", names.join(", ")));
+    }
 }
 
 /// Prints a table as CSV, or as one line of JSON: numbers, categories by name, missing cells null.
@@ -139,45 +178,26 @@ pub(crate) fn json_of(table: &Table) -> Value {
     serde_json::json!({ "columns": names, "rows": rows })
 }
 
-/// Completed rows for programs, gathered.
-#[derive(Default)]
-pub(crate) struct Completed {
-    columns: Value,
-    rows: Vec<Value>,
-    of: Vec<usize>,
-}
-
-impl Completed {
-    /// Adds rows; `of` says which row of the table, from 0, each of them completes.
-    pub(crate) fn add(&mut self, drawn: &Table, of: impl Fn(usize) -> usize) {
-        let mut value = json_of(drawn);
-        self.columns = value["columns"].take();
-        if let Value::Array(rows) = value["rows"].take() {
-            self.of.extend((0..rows.len()).map(of));
-            self.rows.extend(rows);
-        }
-    }
-
-    /// Prints the line, if it was asked for.
-    pub(crate) fn end(self, json: Json) -> Result<()> {
-        json.end(&serde_json::json!({ "columns": self.columns, "rows": self.rows, "of": self.of }))
-    }
-}
-
 /// A table as lines of CSV, the header first; categories by name, missing cells empty.
 pub(crate) fn csv_lines(table: &Table) -> Vec<String> {
     let names = table.columns().iter().map(|c| csv::cell(c.name()));
     let mut lines = vec![names.collect::<Vec<_>>().join(",")];
     for row in 0..table.rows() {
-        let cells = table.columns().iter().map(|column| match column.cell(row) {
-            Cell::Missing => String::new(),
-            Cell::Real(value) => value.to_string(),
-            Cell::Code(code) => {
-                let names = column.categories().unwrap_or_default();
-                csv::cell(names.get(code).map_or("", String::as_str)).into_owned()
-            }
-        });
+        let cells = table.columns().iter().map(|column| text_of(column, row));
+        let cells = cells.map(|text| csv::cell(&text).into_owned());
         lines.push(cells.collect::<Vec<_>>().join(","));
     }
     lines
+}
+
+/// The text of a cell, empty where it is missing.
+pub(crate) fn text_of(column: &Column, row: usize) -> Cow<'_, str> {
+    match column.cell(row) {
+        Cell::Missing => "".into(),
+        Cell::Real(value) => value.to_string().into(),
+        Cell::Code(code) => {
+            let names = column.categories().unwrap_or_default();
+            names.get(code).map_or("", String::as_str).into()
+        }
+    }
 }

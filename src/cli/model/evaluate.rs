@@ -99,9 +99,9 @@ impl Former {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let begun = Instant::now();
-    let (data, _) = args.input.read_related(None)?;
-    args.splits
-        .evaluate(&data, &args.input.table, Contender::Extended, begun)
+    let (kept, _) = args.input.read_related(None)?;
+    let (path, learned) = (&args.input.table, Contender::Extended);
+    (args.splits).evaluate_rows(&kept.data, &kept.rows, path, learned, begun)
 }
 
 impl Splits {
@@ -114,12 +114,28 @@ impl Splits {
         learned: Contender,
         begun: Instant,
     ) -> Result<()> {
+        let rows: Vec<usize> = (0..data.table.rows()).collect();
+        self.evaluate_rows(data, &rows, path, learned, begun)
+    }
+
+    /// As [`Self::evaluate`], of rows that are at these places of the table at `path`.
+    fn evaluate_rows(
+        &self,
+        data: &Dataset,
+        rows: &[usize],
+        path: &Path,
+        learned: Contender,
+        begun: Instant,
+    ) -> Result<()> {
         if !(self.share > 0.0 && self.share < 1.0) {
             return Err(Error::option("--share", "must lie between 0 and 1"));
         }
         if let Some(limit) = self.time_limit.filter(|l| l.is_nan() || *l <= 0.0) {
             let problem = format!("{limit} is not a positive number of seconds");
             return Err(Error::option("--time-limit", problem));
+        }
+        if self.splits == 0 {
+            return Err(Error::option("--splits", "must be at least 1"));
         }
         let settings = self.search.settings(BACKGROUND)?;
         let contenders = self.contenders(learned)?;
@@ -155,8 +171,8 @@ impl Splits {
                 }
             };
             let mean = found.map_err(|e| {
-                let rows = split(data.table.rows(), self.share, self.search.seed, index);
-                Error::content(path, within(&e, &rows, index))
+                let parts = split(data.table.rows(), self.share, self.search.seed, index);
+                Error::content(path, within(e, &parts, rows, index))
             })?;
             former.keep(index, which, mean)?;
             if !json.is_asked() {
@@ -180,9 +196,18 @@ impl Splits {
         let mut models = Vec::new();
         for ((name, _), own) in contenders.iter().zip(&losses) {
             let s = summary(own, reference);
+            // One split has no standard error.
+            let error = |error: f64| match error.is_nan() {
+                true => String::new(),
+                false => format!(" +- {error:.3}"),
+            };
             print::message(&format!(
-                "{name}: {:.3} +- {:.3} nats a row, {:+.3} +- {:.3} beside {}",
-                s.mean, s.error, s.difference, s.difference_error, contenders[0].0
+                "{name}: {:.3}{} nats a row, {:+.3}{} beside {}",
+                s.mean,
+                error(s.error),
+                s.difference,
+                error(s.difference_error),
+                contenders[0].0
             ));
             models.push(serde_json::json!({
                 "model": name, "nll": own, "mean": s.mean, "error": s.error, "difference": s.difference,
@@ -258,10 +283,20 @@ impl Splits {
     }
 }
 
-/// An error of a split, whose rows are those of the data in another order.
-fn within(error: &ModelError, (train, test): &(Vec<usize>, Vec<usize>), split: u64) -> String {
-    let rows = |rows: &[usize], row: usize| rows.get(row).map_or(0, |r| r + 1);
+/// An error of a split, whose rows are those of the data in another order; `rows` has their places in the table.
+fn within(
+    error: ModelError,
+    (train, test): &(Vec<usize>, Vec<usize>),
+    rows: &[usize],
+    split: u64,
+) -> String {
     let split = split + 1;
+    let error = match error {
+        ModelError::UnseenCategory { .. } | ModelError::Contradiction { .. } => {
+            error.among(test).among(rows)
+        }
+        other => other,
+    };
     match error {
         ModelError::UnseenCategory {
             column,
@@ -270,13 +305,9 @@ fn within(error: &ModelError, (train, test): &(Vec<usize>, Vec<usize>), split: u
         } => format!(
             "split {split}, row {}, column `{column}`: category `{category}` is not among the rows learned from (it is too rare \
              to be split)",
-            rows(test, *row)
+            row + 1
         ),
-        ModelError::Contradiction { row, variable } => format!(
-            "split {split}, row {}: probability zero (first contradiction at `{variable}`)",
-            rows(test, *row)
-        ),
-        ModelError::Constant { .. } | ModelError::AllMissing { .. } => {
+        error @ (ModelError::Constant { .. } | ModelError::AllMissing { .. }) => {
             format!(
                 "split {split}, in its {} rows learned from: {error}",
                 train.len()

@@ -6,10 +6,12 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result, csv};
 use edifice_io::building_csv::TextTable;
 use edifice_model::network::{Evidence, FitSettings, Network};
+use edifice_model::tables::categories::Meanings;
 use edifice_model::tables::table_model::LogParts;
 use edifice_model::{ModelError, Table};
 
-use super::data::{Completed, csv_lines, print_table, read_table};
+use super::completed::Completed;
+use super::data::{print_table, read_table, say_hidden};
 use super::{network, query};
 use crate::print::{self, Json};
 
@@ -43,13 +45,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let own = network::network(&args.network)?;
     let text = read_table(&args.table)?;
     let table = table(&own, &text).map_err(|e| Error::content(&args.table, e))?;
-    let hidden: Vec<&str> = own
-        .names()
-        .filter(|name| !table.columns().iter().any(|c| covers(c.name(), name)))
-        .collect();
-    if !hidden.is_empty() {
-        print::message(&format!("hidden: {}", hidden.join(", ")));
-    }
+    let hidden = hidden(&own, &table);
     let settings = FitSettings {
         restarts: args.restarts,
         ..FitSettings::default()
@@ -62,11 +58,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let logs = fitted.network.log_likelihood(&table);
     let logs = logs.map_err(|e| Error::content(&args.table, e))?;
     let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+    let logs = Logs::new(&fitted.network, &table);
+    let logs = logs.map_err(|e| Error::content(&args.table, e))?;
     network::write(&fitted.network, &args.output)?;
+    let parts = match &logs {
+        Logs::Parts(_) => format!(": {}", logs.means()),
+        Logs::Whole(_) => String::new(),
+    };
     print::message(&format!(
-        "{} rows: log-likelihood {mean:.4} nats a row: {}",
-        table.rows(),
-        means(&parts(&fitted.network, &table).map_err(|e| Error::content(&args.table, e))?)
+        "{} rows: log-likelihood {mean:.4} nats a row{parts}",
+        table.rows()
     ));
     match args.json {
         true => print::line(
@@ -87,26 +88,47 @@ fn covers(column: &str, variable: &str) -> bool {
             .is_some_and(|rest| rest.starts_with('['))
 }
 
+/// The variables that a table has no column of, which is said.
+fn hidden<'n>(network: &'n Network, table: &Table) -> Vec<&'n str> {
+    let hidden = network
+        .names()
+        .filter(|name| !table.columns().iter().any(|c| covers(c.name(), name)));
+    let hidden: Vec<&str> = hidden.collect();
+    say_hidden(&hidden);
+    hidden
+}
+
 /// The columns of a table that a network has, read by its categories.
 fn table(network: &Network, text: &TextTable) -> Result<Table, ModelError> {
     let mut table = Table::new();
     for (name, categories) in network.table_columns() {
-        let Some(c) = text.header.iter().position(|h| *h == name) else {
+        let Some(c) = text.column(&name) else {
             continue;
         };
-        let cells = text
-            .rows
-            .iter()
-            .map(|row| row.get(c).map_or("", |t| t.trim()));
         table = match categories {
             Some(all) => {
+                let meanings = Meanings::new(all);
+                let mut codes = Vec::with_capacity(text.rows.len());
+                for row in 0..text.rows.len() {
+                    // Commas may be part of the name of a category.
+                    let [written, cell] = [text.written(row, c), text.cell(row, c)].map(str::trim);
+                    let code = meanings.code(written).or_else(|| meanings.code(cell));
+                    if code.is_none() && !csv::MISSING.contains(&written) {
+                        return Err(ModelError::UnseenCategory {
+                            column: name,
+                            row,
+                            category: written.to_owned(),
+                        });
+                    }
+                    codes.push(code);
+                }
                 let names: Vec<&str> = all.iter().map(String::as_str).collect();
-                let known = |t: &&str| names.contains(t) || !csv::MISSING.contains(t);
-                table.categorical(&name, &names, cells.map(|t| Some(t).filter(known)))?
+                table.codes(&name, &names, codes)?
             }
             None => {
                 let mut values = Vec::with_capacity(text.rows.len());
-                for (row, cell) in cells.enumerate() {
+                for row in 0..text.rows.len() {
+                    let cell = text.cell(row, c).trim();
                     let number = match csv::MISSING.contains(&cell) {
                         true => None,
                         false => Some(cell.parse::<f64>().map_err(|_| {
@@ -147,51 +169,85 @@ pub(super) fn sample(
 pub(super) fn score(network: &Network, path: &Path, json: Json) -> Result<()> {
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
-    let parts = parts(network, &table(network, &text).map_err(at)?).map_err(at)?;
-    print_parts(&parts, json)
+    let table = table(network, &text).map_err(at)?;
+    hidden(network, &table);
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    Logs::new(network, &table).map_err(at)?.print(&rows, json)
 }
 
-/// `log P(c)` of the categories c of every row, and `log p(x | c)` of its numbers.
-fn parts(network: &Network, table: &Table) -> std::result::Result<LogParts, ModelError> {
-    let all = network.log_likelihood(table)?;
-    let discrete = table.columns().iter().filter(|c| c.categories().is_some());
-    let discrete: Vec<&str> = discrete.map(|c| c.name()).collect();
-    let log_probability_mass = match discrete.len() {
-        0 => vec![0.0; table.rows()],
-        n if n == table.columns().len() => all.clone(),
-        _ => network.log_likelihood(&table.only(&discrete)?)?,
-    };
-    let rest = all.iter().zip(&log_probability_mass);
-    Ok(LogParts {
-        log_density: rest.map(|(all, mass)| all - mass).collect(),
-        log_probability_mass,
-    })
+/// The log-likelihood of every row, nats.
+pub(super) enum Logs {
+    /// `log P(c)` of the row's categories c, and `log p(x | c)` of its numbers.
+    Parts(LogParts),
+    /// `log p(c, x)` alone, where categories depend on numbers.
+    Whole(Vec<f64>),
 }
 
-/// Prints the parts of every row, as CSV or for programs, and their means.
-pub(super) fn print_parts(parts: &LogParts, json: Json) -> Result<()> {
-    if json.is_asked() {
-        return json.end(&serde_json::json!({
-            "log_probability_mass": parts.log_probability_mass, "log_density": parts.log_density,
-        }));
+impl Logs {
+    /// Those of a table under a network.
+    fn new(network: &Network, table: &Table) -> std::result::Result<Self, ModelError> {
+        let all = network.log_likelihood(table)?;
+        let discrete = table.columns().iter().filter(|c| c.categories().is_some());
+        let discrete: Vec<&str> = discrete.map(|c| c.name()).collect();
+        let log_probability_mass = match discrete.len() {
+            0 => vec![0.0; table.rows()],
+            n if n == table.columns().len() => all.clone(),
+            _ => {
+                for name in &discrete {
+                    if network.depends_on_numbers(name)? {
+                        return Ok(Self::Whole(all));
+                    }
+                }
+                network.log_likelihood(&table.only(&discrete)?)?
+            }
+        };
+        let rest = all.iter().zip(&log_probability_mass);
+        Ok(Self::Parts(LogParts {
+            log_density: rest.map(|(all, mass)| all - mass).collect(),
+            log_probability_mass,
+        }))
     }
-    print::line("row,log_probability_mass,log_density")?;
-    let both = parts.log_probability_mass.iter().zip(&parts.log_density);
-    for (row, (mass, density)) in both.enumerate() {
-        print::line(&format!("{},{mass},{density}", row + 1))?;
-    }
-    print::message(&format!("means, nats a row: {}", means(parts)));
-    Ok(())
-}
 
-/// The means of both parts in words.
-fn means(parts: &LogParts) -> String {
-    let mean = |logs: &[f64]| logs.iter().sum::<f64>() / logs.len() as f64;
-    format!(
-        "log_probability_mass {:.4}, log_density {:.4}",
-        mean(&parts.log_probability_mass),
-        mean(&parts.log_density)
-    )
+    /// Prints those of rows at these places of a table, as CSV or for programs, and their means.
+    pub(super) fn print(&self, rows: &[usize], json: Json) -> Result<()> {
+        let columns = self.columns();
+        if json.is_asked() {
+            let columns = columns.iter();
+            let columns = columns.map(|(name, logs)| ((*name).to_owned(), (*logs).into()));
+            let mut line: serde_json::Map<String, serde_json::Value> = columns.collect();
+            line.insert("of".to_owned(), rows.into());
+            return json.end(&line.into());
+        }
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        print::line(&format!("row,{}", names.join(",")))?;
+        for (i, row) in rows.iter().enumerate() {
+            let logs = columns.iter().map(|(_, logs)| logs[i].to_string());
+            let logs: Vec<String> = logs.collect();
+            print::line(&format!("{},{}", row + 1, logs.join(",")))?;
+        }
+        print::message(&format!("means, nats a row: {}", self.means()));
+        Ok(())
+    }
+
+    /// Names and numbers.
+    fn columns(&self) -> Vec<(&'static str, &[f64])> {
+        match self {
+            Self::Parts(parts) => vec![
+                ("log_probability_mass", &parts.log_probability_mass),
+                ("log_density", &parts.log_density),
+            ],
+            Self::Whole(logs) => vec![("log_likelihood", logs)],
+        }
+    }
+
+    /// The means in words.
+    fn means(&self) -> String {
+        let columns = self.columns().into_iter().map(|(name, logs)| {
+            let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+            format!("{name} {mean:.4}")
+        });
+        columns.collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Runs `complete` of a network: other columns of the table pass through, before its own.
@@ -205,64 +261,12 @@ pub(super) fn complete(
     let text = read_table(path)?;
     let at = |e| Error::content(path, e);
     let table = table(network, &text).map_err(at)?;
+    hidden(network, &table);
     let mut rng = stream(seed, "model/complete", 0);
     let drawn = network.complete(&table, count, &mut rng).map_err(at)?;
-    if json.is_asked() {
-        let mut completed = Completed::default();
-        completed.add(&drawn, |i| i / count.max(1));
-        return completed.end(json);
-    }
-    let own: Vec<String> = drawn
-        .columns()
-        .iter()
-        .map(|c| c.name().to_owned())
-        .collect();
-    let kept = Passed::new(&text, &own);
-    let mut lines = csv_lines(&drawn).into_iter();
-    if let Some(header) = lines.next() {
-        print::line(&kept.header(&header))?;
-    }
-    for (i, line) in lines.enumerate() {
-        print::line(&kept.line(i / count.max(1), &line))?;
-    }
-    Ok(())
-}
-
-/// Columns of a table that a model does not know, as CSV.
-pub(super) struct Passed<'t> {
-    text: &'t TextTable,
-    columns: Vec<usize>,
-}
-
-impl<'t> Passed<'t> {
-    /// Those that are not among `known`.
-    pub(super) fn new(text: &'t TextTable, known: &[String]) -> Self {
-        let columns = (0..text.header.len()).filter(|&c| !known.contains(&text.header[c]));
-        Self {
-            text,
-            columns: columns.collect(),
-        }
-    }
-
-    /// Their names before a header.
-    pub(super) fn header(&self, line: &str) -> String {
-        self.before(&self.text.header, line)
-    }
-
-    /// Their cells in a row before a line.
-    pub(super) fn line(&self, row: usize, line: &str) -> String {
-        match self.text.rows.get(row) {
-            Some(cells) => self.before(cells, line),
-            None => line.to_owned(),
-        }
-    }
-
-    fn before(&self, cells: &[String], line: &str) -> String {
-        let own = self
-            .columns
-            .iter()
-            .filter_map(|&c| cells.get(c))
-            .map(|text| csv::cell(text).into_owned());
-        own.chain([line.to_owned()]).collect::<Vec<_>>().join(",")
-    }
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    let mut completed = Completed::new(&text, &table, &rows, true, json);
+    completed.header(&drawn)?;
+    completed.add(&drawn, |row| row / count.max(1))?;
+    completed.end()
 }

@@ -6,6 +6,7 @@ use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
 use edifice_model::ModelError;
 use edifice_model::network::{Answer, Estimate, Evidence, Network};
+use edifice_model::tables::categories::Meanings;
 
 use crate::print;
 
@@ -60,6 +61,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let at = super::at(&args.network);
     if let Some(count) = args.explain {
         let found = network.explanations(&evidence, count).map_err(&at)?;
+        if args.json {
+            let all = found.iter().map(|explanation| {
+                let values = explanation.values.iter();
+                let values = values.map(|(name, c)| (name.clone(), c.as_str().into()));
+                let values: serde_json::Map<String, serde_json::Value> = values.collect();
+                serde_json::json!({ "log_joint": explanation.log_joint, "values": values })
+            });
+            let all: Vec<serde_json::Value> = all.collect();
+            return print::line(&serde_json::json!({ "explanations": all }).to_string());
+        }
         for explanation in found {
             let values = explanation.values.iter();
             let values: Vec<String> = values.map(|(n, c)| format!("{n}={c}")).collect();
@@ -159,10 +170,12 @@ pub(super) fn hard(
             .split_once('=')
             .ok_or_else(|| bad("expected VARIABLE=VALUE".into()))?;
         let categories = network.categories(name).map_err(|e| bad(e.to_string()))?;
-        evidence = match categories {
-            [] => evidence.real(name, &numbers(value).map_err(bad)?),
-            names if names.iter().any(|c| c == value) => evidence.is(name, value),
-            names => return Err(bad(format!("{value:?} is none of {}", names.join(", ")))),
+        evidence = match (categories, Meanings::new(categories).code(value)) {
+            ([], _) => evidence.real(name, &numbers(value).map_err(bad)?),
+            (names, Some(code)) => evidence.is(name, &names[code]),
+            (names, None) => {
+                return Err(bad(format!("{value:?} is none of {}", names.join(", "))));
+            }
         };
     }
     Ok(evidence)

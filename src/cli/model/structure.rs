@@ -69,7 +69,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let start = Instant::now();
     let limit = args.time_limit.map(seconds);
     let goes_on = || !interrupted() && limit.is_none_or(|limit| start.elapsed() < limit);
-    let (data, _) = args.input.read()?;
+    let (kept, _) = args.input.read()?;
+    let data = &kept.data;
     // While the table was read, an interrupt ended the process.
     heed_interrupts();
     let settings = SearchSettings {
@@ -84,8 +85,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
         restarts: args.restarts,
         ..SearchSettings::default()
     };
-    let at = |e| Error::content(&args.input.table, e);
-    let (table, cut) = binned(&data.table).map_err(at)?;
+    let at = kept.at(&args.input.table);
+    let (table, cut) = binned(&data.table).map_err(&at)?;
     for own in &cut {
         print::message(&format!(
             "{}: numbers as {} categories by description length: {}",

@@ -6,7 +6,6 @@ use std::time::Instant;
 use edifice_base::file::write_atomic;
 use edifice_base::rng::stream;
 use edifice_base::{Error, Result};
-use edifice_model::ModelError;
 use edifice_model::tables::Dataset;
 use edifice_model::tables::compare::BACKGROUND;
 use edifice_model::tables::encoding::Encoding;
@@ -15,9 +14,9 @@ use edifice_model::tables::learn::extended;
 use edifice_model::tables::relations::Relation;
 use edifice_model::tables::table_model::{FORMAT, TableModel};
 
-use super::data::{
-    Completed, TableInput, csv_lines, print_table, read_model, read_rows, read_table, rows,
-};
+use super::completed::Completed;
+use super::data::{TableInput, print_table, read_model, read_table, rows};
+use super::fit::Logs;
 use super::learning::{Learning, heed_interrupts};
 use super::{Shown, fit, network_of};
 use crate::print::{self, Json};
@@ -112,7 +111,7 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<()> {
 pub(super) fn learn(args: &LearnArgs) -> Result<()> {
     let begun = Instant::now();
     let start = args.learning.from.as_deref().map(read_model).transpose()?;
-    let (data, mut schema) = match args.as_published {
+    let (kept, mut schema) = match args.as_published {
         true => args.input.read()?,
         false => (args.input).read_related(start.as_ref().map(|file| &file.schema))?,
     };
@@ -137,8 +136,8 @@ pub(super) fn learn(args: &LearnArgs) -> Result<()> {
             let prior = &published.priors.linear;
             let goes_on = || args.learning.prepares(begun);
             let seed = args.learning.search.seed;
-            let encoding = Encoding::learn_while(&data, prior, seed, &goes_on);
-            let (encoding, left) = encoding.map_err(at(&args.input.table))?;
+            let encoding = Encoding::learn_while(&kept.data, prior, seed, &goes_on);
+            let (encoding, left) = encoding.map_err(kept.at(&args.input.table))?;
             if left > 0 {
                 print::message(&format!(
                     "the time is short: {left} columns enter without a transform"
@@ -148,12 +147,11 @@ pub(super) fn learn(args: &LearnArgs) -> Result<()> {
         }
     };
     let (encoded, settings) = match &encoding {
-        None => (data.clone(), settings),
+        None => (kept.data.clone(), settings),
         Some(encoding) => {
-            let table = encoding
-                .encode(&data.table)
-                .map_err(at(&args.input.table))?;
-            let groups = encoding.groups(&data.groups);
+            let table = encoding.encode(&kept.data.table);
+            let table = table.map_err(kept.at(&args.input.table))?;
+            let groups = encoding.groups(&kept.data.groups);
             (Dataset { table, groups }, extended(&settings))
         }
     };
@@ -172,7 +170,7 @@ pub(super) fn learn(args: &LearnArgs) -> Result<()> {
             kinds.join(", ").to_lowercase()
         ));
     }
-    let (rows, styles) = (data.table.rows(), found.model.styles());
+    let (rows, styles) = (kept.rows.len(), found.model.styles());
     let edges = found.model.lateral_edges().len();
     let file = TableModel {
         schema,
@@ -203,10 +201,6 @@ pub(super) fn learn(args: &LearnArgs) -> Result<()> {
     }
 }
 
-fn at(path: &Path) -> impl Fn(ModelError) -> Error + '_ {
-    move |error| Error::content(path, error)
-}
-
 /// The warning of a model whose numbers are partly probabilities, partly densities.
 fn mixed(model: &TableModel) -> Option<String> {
     let columns = model.encoding.iter().flat_map(Encoding::columns);
@@ -228,10 +222,10 @@ pub(super) fn score(args: &ScoreArgs) -> Result<()> {
         return fit::score(&network, &args.table, args.json);
     }
     let model = read_model(&args.model)?;
-    let data = read_rows(&model, &args.table)?;
-    let parts = model.log_parts(&data.table);
-    let parts = parts.map_err(|e| Error::content(&args.table, e))?;
-    fit::print_parts(&parts, args.json)
+    let kept = rows(&model, &read_table(&args.table)?, &args.table)?;
+    let parts = model.log_parts(&kept.data.table);
+    let parts = parts.map_err(kept.at(&args.table))?;
+    Logs::Parts(parts).print(&kept.rows, args.json)
 }
 
 /// Runs `sample`.
@@ -251,7 +245,7 @@ pub(super) fn sample(args: &SampleArgs) -> Result<()> {
         true => model.sample(args.count, &mut rng),
         false => model.complete(&given, args.count, &mut rng),
     };
-    let table = draws.map_err(|e| Error::option("--given", e.to_string()))?;
+    let table = draws.map_err(|e| Error::option("--given", e.in_no_row().to_string()))?;
     print_table(&table, args.json)
 }
 
@@ -262,32 +256,21 @@ pub(super) fn complete(args: &CompleteArgs) -> Result<()> {
     }
     let model = read_model(&args.model)?;
     let text = read_table(&args.table)?;
-    let data = rows(&model, &text, &args.table)?;
-    let known: Vec<String> = match model.schema.keep.is_empty() {
-        true => (model.schema.groups.iter().flat_map(|g| g.columns.clone())).collect(),
-        // Rows are left out: what they had else is left out as well.
-        false => text.header.clone(),
-    };
-    let passed = fit::Passed::new(&text, &known);
-    let mut completed = Completed::default();
-    for row in 0..data.table.rows() {
+    let kept = rows(&model, &text, &args.table)?;
+    let table = &kept.data.table;
+    // Where rows are left out, what they had else is left out as well.
+    let passes = model.schema.keep.is_empty();
+    let mut completed = Completed::new(&text, table, &kept.rows, passes, args.json);
+    for row in 0..table.rows() {
         let mut rng = stream(args.seed, "model/complete", row as u64);
-        let given = data.table.select(&[row]);
-        let draws = model.complete(&given, args.count, &mut rng);
-        let draws = draws.map_err(|e| Error::content(&args.table, e.in_row(row)))?;
-        if args.json.is_asked() {
-            completed.add(&draws, |_| row);
-            continue;
+        let draws = model.complete(&table.select(&[row]), args.count, &mut rng);
+        let draws = draws.map_err(|e| kept.at(&args.table)(e.in_row(row)))?;
+        if row == 0 {
+            completed.header(&draws)?;
         }
-        let mut lines = csv_lines(&draws).into_iter();
-        if let Some(header) = lines.next().filter(|_| row == 0) {
-            print::line(&passed.header(&header))?;
-        }
-        for line in lines {
-            print::line(&passed.line(row, &line))?;
-        }
+        completed.add(&draws, |_| row)?;
     }
-    completed.end(args.json)
+    completed.end()
 }
 
 /// The display of a model of a table by `model show`.

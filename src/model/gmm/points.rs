@@ -92,7 +92,7 @@ impl<'a> Points<'a> {
             });
         }
         if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w >= 0.0)) {
-            let problem = format!("row {i}: {} is no weight", weights[i]);
+            let problem = format!("row {}: {} is no weight", i + 1, weights[i]);
             return Err(ModelError::parameter("weights", problem));
         }
         if weights.iter().sum::<f64>() <= 0.0 {

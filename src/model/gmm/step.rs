@@ -123,7 +123,7 @@ impl Em for Steps<'_> {
                 !log_sum_exp(&model.log_joint(&x)).is_finite()
             });
             return Err(ModelError::Contradiction {
-                row: row.unwrap_or(0),
+                row,
                 variable: "mixture".to_owned(),
             });
         }

@@ -67,7 +67,7 @@ impl<'a> Problem<'a> {
         let shape = &self.shape;
         let mut row = Vec::new();
         let contradiction = || ModelError::Contradiction {
-            row: i,
+            row: Some(i),
             variable: self.culprit(params, i),
         };
         if shape.regressors.iter().all(|&c| codes[c] != MISSING) {

@@ -254,7 +254,7 @@ impl Network {
                 None => messages
                     .belief(n)
                     .ok_or_else(|| ModelError::Contradiction {
-                        row: 0,
+                        row: None,
                         variable: node.name.clone(),
                     })?,
             };

@@ -158,7 +158,7 @@ impl Network {
             })?;
             if known.discrete[node].is_some_and(|v| v != value) {
                 return Err(ModelError::Contradiction {
-                    row: 0,
+                    row: None,
                     variable: name.clone(),
                 });
             }

@@ -87,7 +87,7 @@ impl Network {
             return Ok(tree);
         }
         Err(ModelError::Contradiction {
-            row: 0,
+            row: None,
             variable: self.culprit(&question.known),
         })
     }

@@ -1,5 +1,6 @@
 //! Evidence in words: `garage=none`, `bbox.w=12`, `wwr=0.2,0.2,0.1,0.1`, `roof.hip=yes`.
 
+use super::categories::Meanings;
 use crate::hierarchy::Group;
 use crate::{ModelError, Table};
 
@@ -107,11 +108,9 @@ fn add(
         })?;
         return Ok(table.real(name, [Some(number)])?);
     };
-    let binary = categories == ["no", "yes"];
     let code = match text {
-        "none" | "0" | "false" if binary => Some(0),
-        "1" | "true" if binary => Some(1),
-        text => categories.iter().position(|c| c == text),
+        "none" if categories == ["no", "yes"] => Some(0),
+        text => Meanings::new(categories).code(text),
     };
     let code = code.ok_or_else(|| GivenError::Category {
         name: name.into(),

@@ -9,6 +9,7 @@
 //! | [`transform`] | monotone transforms of a real column |
 //! | [`table_model`] | a hierarchical model with the schema that it reads tables by |
 //! | [`joined`] | real columns that share hidden variables: all, those of a group, or none, by the highest score |
+//! | [`categories`] | which category a text means |
 //! | [`bins`] | real columns as categories, by description length |
 //! | [`kernels`] | a kernel density over mixed columns, a peer |
 //! | [`mixture`] | a Gaussian mixture over mixed columns, the baseline |
@@ -17,6 +18,7 @@
 //! Texts become numbers and categories here; the models themselves are in [`crate`].
 
 pub mod bins;
+pub mod categories;
 pub mod compare;
 pub mod encoding;
 pub mod given;

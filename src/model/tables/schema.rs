@@ -18,6 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::Dataset;
+use super::categories::flag;
 use super::relations::{Relation, Relations, find};
 use crate::hierarchy::Group;
 use crate::{ModelError, Table};
@@ -162,29 +163,32 @@ impl Schema {
         text.map_err(|e| ModelError::corrupt("the schema", e.to_string()))
     }
 
-    /// Reads the cells of a table by this schema.
+    /// The rows of a table that are kept, from 0, ascending.
+    ///
+    /// # Errors
+    /// [`SchemaError::UnknownColumn`]; [`SchemaError::NothingKept`] where none is.
+    pub fn kept(&self, header: &[String], rows: &[Vec<String>]) -> Result<Vec<usize>, SchemaError> {
+        let mut kept: Vec<usize> = (0..rows.len()).collect();
+        for (column, values) in &self.keep {
+            let c = place(header, column)?;
+            kept.retain(|&r| rows[r].get(c).is_some_and(|text| values.contains(text)));
+        }
+        match kept.is_empty() {
+            true => Err(SchemaError::NothingKept),
+            false => Ok(kept),
+        }
+    }
+
+    /// Reads the cells of a table by this schema: those of the rows that are [kept](Self::kept), one after the other.
     ///
     /// # Errors
     /// [`SchemaError`] names the column and the row.
     pub fn read(&self, header: &[String], rows: &[Vec<String>]) -> Result<Dataset, SchemaError> {
-        let find = |column: &String| {
-            let place = header.iter().position(|h| h == column);
-            place.ok_or_else(|| SchemaError::UnknownColumn {
-                column: column.clone(),
-            })
-        };
-        let mut kept: Vec<usize> = (0..rows.len()).collect();
-        for (column, values) in &self.keep {
-            let c = find(column)?;
-            kept.retain(|&r| rows[r].get(c).is_some_and(|text| values.contains(text)));
-        }
-        if kept.is_empty() {
-            return Err(SchemaError::NothingKept);
-        }
+        let kept = self.kept(header, rows)?;
         let mut table = Table::new();
         for group in &self.groups {
             for column in &group.columns {
-                let c = find(column)?;
+                let c = place(header, column)?;
                 let cells: Vec<(usize, Option<&str>)> = kept
                     .iter()
                     .map(|&r| (r + 1, self.cell(rows[r].get(c).map_or("", String::as_str))))
@@ -219,6 +223,14 @@ impl Schema {
     }
 }
 
+/// The place of a column in a header, whatever blanks are around either name.
+fn place(header: &[String], column: &str) -> Result<usize, SchemaError> {
+    let place = header.iter().position(|h| h.trim() == column.trim());
+    place.ok_or_else(|| SchemaError::UnknownColumn {
+        column: column.to_owned(),
+    })
+}
+
 /// Adds a column of the given kind; cells come with their row, the first is 1.
 fn add(
     table: Table,
@@ -245,16 +257,14 @@ fn add(
         Kind::Binary => {
             let mut values = Vec::with_capacity(cells.len());
             for &(row, text) in cells {
-                let flag = |text: &str| match text.to_ascii_lowercase().as_str() {
-                    "0" | "0.0" | "no" | "false" => Ok(false),
-                    "1" | "1.0" | "yes" | "true" => Ok(true),
-                    _ => Err(SchemaError::NotBinary {
+                let read = |text: &str| {
+                    flag(text).ok_or_else(|| SchemaError::NotBinary {
                         row,
                         column: column.to_owned(),
                         text: text.to_owned(),
-                    }),
+                    })
                 };
-                values.push(text.map(flag).transpose()?);
+                values.push(text.map(read).transpose()?);
             }
             Ok(table.binary(column, values)?)
         }

@@ -129,7 +129,7 @@ impl TableModel {
         self.decode(&self.model.sample(count, rng)?.table)
     }
 
-    /// Completes every row of `given` `count` times. A known column that others determine binds them: those that are
+    /// Completes every row of `given` `count` times; numbers that are given stay, to the bit. A known column that others determine binds them: those that are
     /// missing are drawn so that the relation holds exactly, by importance from 64 candidates a draw where several are.
     ///
     /// # Errors
@@ -148,12 +148,13 @@ impl TableModel {
         let bound = bound.collect::<Result<Vec<_>, ModelError>>()?;
         if bound.iter().all(Vec::is_empty) {
             let draws = (self.model).complete(&self.encode_reduced(&reduced)?, count, rng)?;
-            return self.decode(&draws.table);
+            return Ok(self.decode(&draws.table)?.overlaid(given, count));
         }
         let mut all: Option<Table> = None;
         for (row, bound) in bound.iter().enumerate() {
             let draws = self.complete_bound(&reduced.select(&[row]), bound, count, rng);
             let draws = self.restored(draws.map_err(|e| e.in_row(row))?)?;
+            let draws = draws.overlaid(&given.select(&[row]), count);
             match &mut all {
                 Some(all) => all.append(&draws),
                 None => all = Some(draws),
@@ -199,7 +200,7 @@ impl TableModel {
             let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let weights = logs.iter().map(|log| (log - most).exp());
             let weighted = WeightedIndex::new(weights).map_err(|_| ModelError::Contradiction {
-                row: 0,
+                row: None,
                 variable: pivots.join(", "),
             })?;
             chosen.push(draw * CANDIDATES + weighted.sample(rng));

@@ -245,7 +245,7 @@ impl<'a> Relations<'a> {
 
 fn broken(relation: &Relation, row: usize) -> ModelError {
     ModelError::Contradiction {
-        row,
+        row: Some(row),
         variable: relation.said(),
     }
 }
