@@ -81,7 +81,8 @@ type Draws = Vec<(Vec<usize>, f64)>;
 
 impl Network {
     /// Likelihood weighting: every variable without evidence is drawn given its parents, and a draw weighs as much as the
-    /// evidence is likely given it. One estimate for each discrete variable; standard errors by the delta method.
+    /// evidence is likely given it. One estimate for each discrete variable; standard errors by the delta method, but at least
+    /// `1 / (n + 2)` for draws that are worth n of equal weight, `n = (Σ w)² / Σ w²`: that of a category that none of them has is not 0.
     ///
     /// # Errors
     /// Evidence that does not fit; [`ModelError::Parameter`] when no draw agrees with the evidence, or `draws` is 0.
@@ -102,11 +103,17 @@ impl Network {
             draw.1 = (draw.1 - top).exp();
         }
         let total: f64 = drawn.iter().map(|d| d.1).sum();
+        let effective = total.powi(2) / drawn.iter().map(|d| d.1.powi(2)).sum::<f64>();
+        let least = 1.0 / (effective + 2.0);
         Ok(self.estimates(|n, v| {
             let hits = |d: &(Vec<usize>, f64)| f64::from(u8::from(d.0[n] == v));
             let p = drawn.iter().map(|d| d.1 * hits(d)).sum::<f64>() / total;
             let spread = drawn.iter().map(|d| (d.1 * (hits(d) - p)).powi(2));
-            (p, spread.sum::<f64>().sqrt() / total)
+            let error = spread.sum::<f64>().sqrt() / total;
+            match known.discrete[n] {
+                Some(_) => (p, error),
+                None => (p, error.max(least)),
+            }
         }))
     }
 

@@ -312,6 +312,29 @@ fn approximations_agree_with_the_exact_answer() {
 }
 
 #[test]
+fn few_draws_that_carry_weight_are_never_sure() {
+    // The evidence is near impossible unless `rare`, which one draw of a thousand has.
+    let network = Network::new(vec![
+        Variable::table("rare", &["no", "yes"], &[], &[0.999, 0.001]),
+        Variable::table(
+            "seen",
+            &["no", "yes"],
+            &["rare"],
+            &[1.0 - 1e-9, 1e-9, 0.1, 0.9],
+        ),
+    ]);
+    let network = network.unwrap();
+    let given = Evidence::new().is("seen", "yes");
+    for run in 0..20 {
+        let drawn = network.likelihood_weighting(&given, 2000, &mut stream(run, "lw", 0));
+        let drawn = drawn.unwrap();
+        assert!(drawn[0].errors.iter().all(|e| *e > 4e-4), "{drawn:?}");
+        // What is given is sure.
+        assert_eq!(drawn[1].errors, [0.0, 0.0]);
+    }
+}
+
+#[test]
 fn standard_errors_cover_as_often_as_they_should() {
     let network = grid_network(3);
     let given = Evidence::new().is("v2_2", "no");
