@@ -247,13 +247,16 @@ impl Encoded {
         }
         match self.transform.bounds {
             Bounds::None => {}
-            Bounds::Positive { offset } => parts.push(format!("log(1 + x / {offset:.4})")),
+            Bounds::Positive { offset } => {
+                parts.push(format!("log(1 + x / {})", rounded(offset)));
+            }
             Bounds::Share { offset } => {
                 parts.push(format!("log((x + {offset}) / (1 - x + {offset}))"));
             }
         }
         if let Some(Tails { centre, scale }) = self.transform.tails {
-            parts.push(format!("tails from {centre:.4} +- {scale:.4}"));
+            let [centre, scale] = [centre, scale].map(rounded);
+            parts.push(format!("tails from {centre} +- {scale}"));
         }
         (!parts.is_empty()).then(|| format!("{}: {}", self.column, parts.join("; ")))
     }
@@ -267,6 +270,14 @@ impl Encoded {
     fn code(&self, value: f64) -> usize {
         let atom = self.atoms.iter().position(|a| *a == value);
         atom.map_or(0, |i| i + 1)
+    }
+}
+
+/// A number of any size, with four places behind the point or, where it is small or large, behind the first digit.
+fn rounded(x: f64) -> String {
+    match x == 0.0 || (1e-2..1e7).contains(&x.abs()) {
+        true => format!("{x:.4}"),
+        false => format!("{x:.4e}"),
     }
 }
 

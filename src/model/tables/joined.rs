@@ -115,7 +115,7 @@ pub fn learn_one_group(
     };
     let settings = match together.len() {
         1 => Settings {
-            styles: 1..=1,
+            styles: *settings.styles.start()..=*settings.styles.start(),
             ..settings.clone()
         },
         _ => settings.clone(),
