@@ -97,6 +97,7 @@ pub fn records(plan: &Plan, out: &Path, keep: Keep) -> Result<Vec<Record>> {
     let mut entries = read_all(out, &plan.head.program, keep)?.entries;
     let record = |task: &super::plan::Task| {
         let entry = entries.remove(&task.key);
+        let missing = entry.is_none();
         let (outcome, failure, seconds) = match entry {
             Some(entry) => (entry.outcome, entry.failure, entry.seconds),
             None => (None, Some("missing".to_owned()), 0.0),
@@ -107,6 +108,7 @@ pub fn records(plan: &Plan, out: &Path, keep: Keep) -> Result<Vec<Record>> {
             seed: task.seed,
             outcome,
             failure,
+            missing,
             seconds,
         }
     };

@@ -15,6 +15,8 @@ pub struct Record {
     pub outcome: Option<Outcome>,
     /// Why there is none.
     pub failure: Option<String>,
+    /// True if the task has not run: then it has not failed.
+    pub missing: bool,
     /// Processor seconds.
     pub seconds: f64,
 }

@@ -121,8 +121,26 @@ fn report_bundle_and_verify() {
         text.contains("15 of 30 tasks have no result") && text.contains("--allow-missing"),
         "{text}"
     );
+    // What has not run has not failed.
+    let some = ["report", "ablation.toml", "--out", "out", "--allow-missing"];
+    edifice(folder, &some).success();
+    let counts = || -> Vec<(String, Vec<usize>)> {
+        let csv = std::fs::read_to_string(folder.join("out/report/report.csv")).unwrap();
+        let (header, lines) = csv.split_once('\n').unwrap();
+        let last: Vec<&str> = header.split(',').skip(14).collect();
+        let own = |line: &str| {
+            let cells = line.rsplit(',').take(last.len());
+            cells.map(|cell| cell.parse().unwrap()).collect()
+        };
+        let own = lines.lines().map(|line| (last.join(","), own(line)));
+        own.collect()
+    };
+    let of = |place: usize| counts().iter().map(|(_, own)| own[place]).sum::<usize>();
+    assert_eq!(counts()[0].0, "failed,missing");
+    assert_eq!((of(0), of(1)), (15, 0), "missing and failed");
     edifice(folder, &["retry", "ablation.toml", "--out", "out"]).success();
     edifice(folder, &["report", "ablation.toml", "--out", "out"]).success();
+    assert_eq!((counts()[0].0.as_str(), of(0)), ("failed", 0));
     for name in [
         "report.md",
         "report.tex",

@@ -70,6 +70,8 @@ pub struct ArmResult {
     pub gap: Option<f64>,
     /// Tasks that failed.
     pub failed: usize,
+    /// Tasks that have not run.
+    pub missing: usize,
 }
 
 /// Everything that a report says.
@@ -111,10 +113,14 @@ pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
         .first()
         .is_some_and(|(name, _)| *name == question.metric);
     let mut gaps: Vec<Vec<f64>> = vec![Vec::new(); arms];
-    let mut failed = vec![0; arms];
+    let (mut failed, mut missing) = (vec![0; arms], vec![0; arms]);
     for record in records {
         let Some(outcome) = &record.outcome else {
-            failed[record.arm] += 1;
+            let counted = match record.missing {
+                true => &mut missing,
+                false => &mut failed,
+            };
+            counted[record.arm] += 1;
             continue;
         };
         let Some(&value) = outcome.metrics.get(&question.metric) else {
@@ -178,6 +184,7 @@ pub fn compare(plan: &Plan, study: &Study, records: &[Record]) -> Comparison {
             gap: (!gaps[arm].is_empty())
                 .then(|| gaps[arm].iter().sum::<f64>() / gaps[arm].len() as f64),
             failed: failed[arm],
+            missing: missing[arm],
         });
     }
     let row = |&i: &usize| {

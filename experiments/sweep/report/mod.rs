@@ -163,6 +163,10 @@ fn table(plan: &Plan, comparison: &Comparison) -> Table {
         table = table.numbers(["gap to bound"]);
     }
     table = table.numbers(["failed"]);
+    let open = lacks_tasks(comparison);
+    if open {
+        table = table.numbers(["missing"]);
+    }
     for (arm, line) in plan.head.arms.iter().zip(&comparison.lines) {
         let range = |low: f64, high: f64| format!("{} to {}", short(low), short(high));
         let mut cells = vec![arm.name.clone()];
@@ -196,18 +200,28 @@ fn table(plan: &Plan, comparison: &Comparison) -> Table {
             );
         }
         cells.push(line.failed.to_string());
+        if open {
+            cells.push(line.missing.to_string());
+        }
         table.row(cells);
     }
     table
 }
 
+/// True if tasks have not run: then how many is said.
+fn lacks_tasks(comparison: &Comparison) -> bool {
+    comparison.lines.iter().any(|line| line.missing > 0)
+}
+
 fn csv(plan: &Plan, comparison: &Comparison) -> String {
     let mut text = String::from(
-        "arm,mean,low,high,difference,difference_low,difference_high,better,equal,worse,p,p_holm,effect,gap,failed\n",
+        "arm,mean,low,high,difference,difference_low,difference_high,better,equal,worse,p,p_holm,effect,gap,failed",
     );
+    let open = lacks_tasks(comparison);
+    text += if open { ",missing\n" } else { "\n" };
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for (arm, line) in plan.head.arms.iter().zip(&comparison.lines) {
-        let cells = [
+        let mut cells = vec![
             csv::quoted(&arm.name),
             number(line.interval.map(|i| i.mean)),
             number(line.interval.map(|i| i.low)),
@@ -224,6 +238,9 @@ fn csv(plan: &Plan, comparison: &Comparison) -> String {
             number(line.gap),
             line.failed.to_string(),
         ];
+        if open {
+            cells.push(line.missing.to_string());
+        }
         text += &(cells.join(",") + "\n");
     }
     text
