@@ -1,6 +1,7 @@
 //! Gaussian mixtures, on tables of numbers.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -39,8 +40,8 @@ struct Settings {
     criterion: CriterionName,
     /// Shape of the covariances: full, diagonal, or one for all components.
     covariance: Covariance,
-    /// Most components.
-    most: usize,
+    /// Most components, at least 1.
+    most: NonZeroUsize,
     /// k-means++ starts.
     restarts: usize,
     /// Share of the rows that is learnt from; the others judge.
@@ -52,7 +53,7 @@ impl Default for Settings {
         Self {
             criterion: CriterionName::Mdl,
             covariance: Covariance::Full,
-            most: 8,
+            most: const { NonZeroUsize::new(8).unwrap() },
             restarts: gmm::Settings::default().restarts,
             share: 0.8,
         }
@@ -127,7 +128,7 @@ impl Trial for Density {
             CriterionName::Mdl => Criterion::Mdl,
             CriterionName::Bic => Criterion::Bic,
         };
-        let selected = select(&points, settings.most, criterion, &asked, seed);
+        let selected = select(&points, settings.most.get(), criterion, &asked, seed);
         let mixture = selected.map_err(Error::method)?.fitted.mixture;
         let logs = log_densities(&mixture, &question.asked);
         let logs = logs.ok_or_else(|| Error::method(GmmError::Singular))?;

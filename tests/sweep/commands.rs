@@ -308,6 +308,10 @@ fn refused_sweeps_leave_no_folder() {
             "study = \"model/gmm\"\ndata = [\"mixture_1.csv\"]\n[[arm]]\nname = \"a\"\ncommand = \"a {input} {output}\"\nfiles = [\"b.py\"]\n",
             "line 6, column 9: files: there is no file `b.py`",
         ),
+        (
+            "study = \"model/gmm\"\ndata = [\"mixture_1.csv\"]\n[base]\nmost = 0\n[[arm]]\nname = \"a\"\n",
+            "nonzero",
+        ),
     ] {
         let folder = prepared(text);
         for verb in ["plan", "run"] {
