@@ -6,6 +6,12 @@
 //! from), and the judge checks what holds for every density `p`: the mean of `min(p/q, M)` over the probes has an expectation of
 //! at most 1. By Hoeffding's inequality a true density exceeds `1 + t` with probability at most `exp(-2 n t^2 / M^2)`, which is 1e-6 here. A density
 //! that is honest at probes alone passes: the check is necessary, not sufficient.
+//!
+//! # Deviations and readings
+//! - Probes are rounded to the decimals that a column of the table has, since they would be known by their digits otherwise, and `q` is evaluated
+//!   where they then are. That is done where the step is at most a sixteenth of the kernel's width: `q` hardly changes within one, and a density
+//!   that peaks at one of them is not refused for it. In a column of coarser steps (whole numbers of a few, say) probes keep all digits, and
+//!   a candidate can tell them.
 
 use std::path::Path;
 
@@ -24,6 +30,8 @@ const CUT: f64 = 16.0;
 const FALSE_ALARM: f64 = 1e-6;
 /// Most kernels of `q`.
 const KERNELS: usize = 500;
+/// Least width of a kernel, in steps of the last decimal, where probes are rounded to it.
+const STEPS: f64 = 16.0;
 
 /// Why log densities are no answer, or rows no table.
 #[derive(Debug, thiserror::Error)]
@@ -82,12 +90,23 @@ pub(crate) fn question(
 ) -> (Question, Truth) {
     let rng = &mut stream(seed, "density probes", 0);
     let kernels = Kernels::new(&train, rng);
+    let decimals: Vec<Option<usize>> = (0..header.len())
+        .map(|column| {
+            let cells = train.iter().chain(unseen).map(|row| row[column]);
+            let most = cells.map(decimals).max().unwrap_or(0);
+            let step = 10_f64.powi(-(most as i32));
+            (kernels.widths[column] >= STEPS * step).then_some(most)
+        })
+        .collect();
     let mut rows: Vec<(Option<usize>, Vec<f64>)> = unseen
         .iter()
         .enumerate()
         .map(|(index, row)| (Some(index), row.clone()))
         .collect();
-    rows.extend((0..PROBES).map(|_| (None, kernels.draw(rng))));
+    rows.extend((0..PROBES).map(|_| {
+        let row = kernels.draw(rng).into_iter().zip(&decimals);
+        (None, row.map(|(x, places)| rounded(x, *places)).collect())
+    }));
     rows.shuffle(rng);
     let mut truth = Truth {
         unseen: vec![0; unseen.len()],
@@ -106,6 +125,19 @@ pub(crate) fn question(
         asked,
     };
     (question, truth)
+}
+
+/// Decimals of a number as it is written.
+fn decimals(x: f64) -> usize {
+    let text = x.to_string();
+    text.split_once('.').map_or(0, |(_, places)| places.len())
+}
+
+/// A number with so many decimals; as it is without.
+fn rounded(x: f64, places: Option<usize>) -> f64 {
+    // A text of decimals is a number: it reads back. A zero has no sign.
+    let read = |places: usize| format!("{x:.places$}").parse().unwrap_or(x) + 0.0;
+    places.map_or(x, read)
 }
 
 /// Mean negative log density of the unseen rows, nats.
@@ -256,5 +288,43 @@ mod tests {
             let refused = judge(&truth, &boosted);
             assert!(matches!(refused, Err(DensityError::NotNormalized { .. })));
         }
+    }
+
+    #[test]
+    fn probes_have_the_digits_of_the_table() {
+        // Three decimals, two, and whole numbers of a few.
+        let table = |count, seed| -> Vec<Vec<f64>> {
+            let scaled = rows(count, seed).into_iter().map(|row| {
+                let [a, b, c] = [0, 1, 2].map(|at| row[at]);
+                vec![
+                    rounded(a, Some(3)),
+                    rounded(300.0 * b, Some(2)),
+                    rounded(c, Some(0)),
+                ]
+            });
+            scaled.collect()
+        };
+        let header = vec!["a".into(), "b".into(), "c".into()];
+        let unseen = table(100, 2);
+        let (question, truth) = question(header, table(400, 1), &unseen, 1);
+        for (column, most) in [(0, 3), (1, 2)] {
+            let told = |row: &Vec<f64>| decimals(row[column]) > most;
+            assert!(!question.asked.iter().any(told));
+            // Neither have all of them fewer.
+            let most = |row: &&Vec<f64>| decimals(row[column]) == most;
+            let probes = truth
+                .probes
+                .iter()
+                .map(|(place, _)| &question.asked[*place]);
+            assert!(probes.filter(most).count() > 3 * PROBES / 4);
+        }
+        let probe = &question.asked[truth.probes[0].0];
+        assert!(decimals(probe[2]) > 3);
+        // A density still passes, and one that adds a constant does not.
+        let density = |row: &Vec<f64>| normal(&[row[0], row[1] / 300.0, row[2]]) - 300_f64.ln();
+        let honest: Vec<f64> = question.asked.iter().map(density).collect();
+        assert!(judge(&truth, &honest).is_ok());
+        let boosted: Vec<f64> = honest.iter().map(|log| log + 1.0).collect();
+        assert!(judge(&truth, &boosted).is_err());
     }
 }
