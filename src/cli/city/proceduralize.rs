@@ -1,6 +1,7 @@
 //! `edifice city proceduralize`.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +11,7 @@ use edifice_base::{Error, Progress, Result, unwatched};
 use edifice_city_proceduralization as method;
 use edifice_city_proceduralization::{
     Budget, Detection, Mode, PAPER_FEATURES, Precision, Proceduralized, Representative, Settings,
-    judge,
+    Verdict, judge,
 };
 use edifice_grammar::instance::{InstanceGrammar, Kept};
 use edifice_io_city::{self as city, glb, grammar_file};
@@ -59,10 +60,10 @@ pub(crate) struct Args {
     /// Number of templates, or `all`.
     #[arg(long, value_name = "K", group = "budget")]
     templates: Option<String>,
-    /// Most bytes of the grammar's file, without textures.
+    /// Most bytes of the grammar's file, without textures; of the numbers of templates tried, the most that fits.
     #[arg(long, value_name = "N", group = "budget")]
     bytes: Option<usize>,
-    /// Least volumetric intersection over union with the input.
+    /// Least volumetric intersection over union with the input; of the numbers of templates tried, the one of fewest bytes.
     #[arg(long, value_name = "X", group = "budget")]
     iou: Option<f64>,
     /// Halvings of the number of components [default: 4].
@@ -116,20 +117,35 @@ pub(super) fn run(args: &Args) -> Result<()> {
         input.buildings.len(),
         input.triangles()
     ));
+    // The nearest to what is asked for, of those tried: how much it has of it, and its templates.
+    let nearest: Cell<Option<(f64, usize)>> = Cell::new(None);
+    let note = |value: f64, templates: usize, better: fn(f64, f64) -> bool| {
+        if nearest.get().is_none_or(|(known, _)| better(value, known)) {
+            nearest.set(Some((value, templates)));
+        }
+    };
     let made = match (args.bytes, args.iou) {
-        (Some(bytes), _) => {
+        (Some(most), _) => {
             let small = |g: &InstanceGrammar| {
-                let found = args.bytes_of(g)?.len();
-                print::message(&format!("{} templates: {found} bytes", g.templates.len()));
-                Ok(found <= bytes)
+                let bytes = args.bytes_of(g)?.len();
+                let templates = g.templates.len();
+                print::message(&format!("{templates} templates: {bytes} bytes"));
+                note(bytes as f64, templates, |a, b| a < b);
+                let fits = bytes <= most;
+                Ok(Verdict { fits, bytes })
             };
             method::largest(&input, &settings, small, &unwatched).map_err(|e| failure(e, args))?
         }
         (_, Some(least)) => {
             let good = |g: &InstanceGrammar| {
-                let found = judge::iou(&input, &args.said(g))?;
-                print::message(&format!("{} templates: IoU {found:.4}", g.templates.len()));
-                Ok(found >= least)
+                let iou = judge::iou(&input, &args.said(g))?;
+                let (bytes, templates) = (args.bytes_of(g)?.len(), g.templates.len());
+                print::message(&format!(
+                    "{templates} templates: {bytes} bytes, IoU {iou:.4}"
+                ));
+                note(iou, templates, |a, b| a > b);
+                let fits = iou >= least;
+                Ok(Verdict { fits, bytes })
             };
             method::smallest(&input, &settings, good, &unwatched).map_err(|e| failure(e, args))?
         }
@@ -148,13 +164,20 @@ pub(super) fn run(args: &Args) -> Result<()> {
             Some(made.map_err(|e| failure(e.into(), args))?)
         }
     };
-    let option = if args.bytes.is_some() {
-        "--bytes"
-    } else {
-        "--iou"
+    let missed = || {
+        let (value, templates) = nearest.get().unwrap_or_default();
+        match args.bytes {
+            Some(_) => Error::option(
+                "--bytes",
+                format!("the smallest found is {value} bytes, with {templates} templates"),
+            ),
+            None => Error::option(
+                "--iou",
+                format!("the highest found is {value:.4}, with {templates} templates"),
+            ),
+        }
     };
-    let mut made =
-        made.ok_or_else(|| Error::option(option, "no number of templates reaches it"))?;
+    let mut made = made.ok_or_else(missed)?;
     if args.residuals == Residuals::Drop {
         made.grammar = made.grammar.rules_only();
     }

@@ -87,5 +87,5 @@ pub use components::{Decomposition, decompose};
 pub use features::PAPER_FEATURES;
 pub use parse_tree::Detection;
 pub use proceduralize::{Proceduralized, Structure, from_components, proceduralize};
-pub use search::{largest, smallest};
+pub use search::{Verdict, largest, smallest};
 pub use settings::{Budget, Mode, Precision, ProceduralizeError, Representative, Settings};

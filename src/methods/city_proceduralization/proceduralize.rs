@@ -191,14 +191,15 @@ impl<'a> Prepared<'a> {
         })
     }
 
+    /// The number of templates from which on more change nothing.
+    pub(super) fn most(&self) -> usize {
+        let stated = self.best.as_ref().and_then(|best| best.stated.as_ref());
+        stated.map_or(self.components.len(), |s| s.representatives.len())
+    }
+
     pub(super) fn grammar(&self, budget: Budget) -> Made {
         let (city, components, settings) = (self.city, self.components, self.settings);
-        let n = components.len();
-        let k = match budget {
-            Budget::All => n,
-            Budget::Templates(k) => k.clamp(1, n),
-            Budget::Level(level) => n.checked_shr(level).unwrap_or(0).max(1),
-        };
+        let k = budget.templates(components.len());
         let Some(best) = &self.best else {
             let (weights, representative) = (&settings.weights, settings.representative);
             let types = paper_types(

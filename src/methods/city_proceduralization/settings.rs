@@ -25,6 +25,17 @@ pub enum Budget {
     Level(u32),
 }
 
+impl Budget {
+    /// The number of templates for a number of components.
+    pub(super) fn templates(self, components: usize) -> usize {
+        match self {
+            Budget::All => components,
+            Budget::Templates(k) => k.clamp(1, components),
+            Budget::Level(level) => components.checked_shr(level).unwrap_or(0).max(1),
+        }
+    }
+}
+
 /// The precision in which a grammar is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
