@@ -48,8 +48,8 @@ OBJ and CityJSON are z up, in metres; glTF is y up.")]
   edifice city edit town.city-grammar.json 'scale B*=1,1,1.5' 'scale T1=1,1,1.5' -o taller.city-grammar.json
 Edits, made in turn: scale NAME=FX,FY,FZ (factors of width, depth and height of a type of building, B1 or E1, or of a template,
 T1, wherever it stands; NAME may end in * for all names that begin so); move NAME=DX,DY,DZ and turn NAME=DEGREES (districts D1, blocks
-K1 and rows R1; in metres, and about the place of its first building); remove NAME (a row closes up); weight RULE=W, the rules
-counted from 0 as in the file.
+K1 and rows R1; in metres, and about the place of its first building); remove NAME (a row closes up, and a
+building that nothing is left of goes); weight RULE=W, the rules counted from 0 as in the file.
 Residuals are carried along, or left out with --residuals drop.")]
     Edit(edit::Args),
     /// Write a city in another format.

@@ -15,7 +15,8 @@ pub enum CityEdit {
     Move(String, [f64; 3]),
     /// `turn NAME=DEGREES`: a turn of a district, block or row about the place of its first building, counterclockwise from above.
     Turn(String, f64),
-    /// `remove NAME`: takes a district, block, row, type of building or template away; a row closes up.
+    /// `remove NAME`: takes a district, block, row, type of building or template away, and buildings that nothing is left of; a
+    /// row closes up.
     Remove(String),
     /// `weight RULE=W`: weight of a rule, counted from 0 in the order of the file.
     Weight(usize, f64),
@@ -189,7 +190,9 @@ fn remove(grammar: &mut InstanceGrammar, name: &str) -> Result<(), CityEditError
         kept.entry(rule.symbol.clone())
             .or_insert_with(|| stays.collect());
     }
-    if kept.values().flatten().all(|&stays| stays) {
+    // A template may stand in the parts of instances alone.
+    let template = grammar.templates.iter().any(|t| is_named(name, &t.symbol));
+    if !template && kept.values().flatten().all(|&stays| stays) {
         return Err(CityEditError::NoSymbol(name.to_owned()));
     }
     grammar
@@ -198,21 +201,88 @@ fn remove(grammar: &mut InstanceGrammar, name: &str) -> Result<(), CityEditError
     grammar.templates.retain(|t| !is_named(name, &t.symbol));
     for rule in &mut grammar.rules {
         rule.successors.retain(|s| !is_named(name, &s.symbol));
-        rule.successors
-            .iter_mut()
-            .for_each(|s| drop_parts(s, &kept));
+        let own = rule.successors.iter_mut();
+        own.for_each(|s| drop_parts(s, &kept, &|symbol| is_named(name, symbol)));
     }
+    remove_empty(grammar);
     Ok(())
 }
 
-/// The parts of an instance without those of successors that are gone.
-fn drop_parts(placed: &mut Placement, kept: &FxHashMap<String, Vec<bool>>) {
+/// Takes out of all rules what derives to nothing any more.
+fn remove_empty(grammar: &mut InstanceGrammar) {
+    let mut rules: FxHashMap<&str, &InstanceRule> = FxHashMap::default();
+    for rule in &grammar.rules {
+        rules.entry(rule.symbol.as_str()).or_insert(rule);
+    }
+    let mut empty: FxHashSet<&str> = FxHashSet::default();
+    loop {
+        let known = empty.len();
+        for (symbol, rule) in &rules {
+            if rule.successors.iter().all(|s| is_empty(s, &rules, &empty)) {
+                empty.insert(symbol);
+            }
+        }
+        if empty.len() == known {
+            break;
+        }
+    }
+    let stays = |rule: &InstanceRule| -> Vec<bool> {
+        let successors = rule.successors.iter();
+        successors.map(|s| !is_empty(s, &rules, &empty)).collect()
+    };
+    let masks: Vec<Vec<bool>> = grammar.rules.iter().map(stays).collect();
+    let mut kept: FxHashMap<String, Vec<bool>> = FxHashMap::default();
+    for (rule, mask) in grammar.rules.iter().zip(&masks) {
+        kept.entry(rule.symbol.clone())
+            .or_insert_with(|| mask.clone());
+    }
+    let bare = kept
+        .iter()
+        .filter(|(symbol, mask)| !mask.contains(&true) && **symbol != grammar.axiom);
+    let bare: FxHashSet<String> = bare.map(|(symbol, _)| symbol.clone()).collect();
+    for (rule, mask) in grammar.rules.iter_mut().zip(masks) {
+        let mut mask = mask.into_iter();
+        rule.successors
+            .retain(|_| mask.next().is_none_or(|stays| stays));
+        let own = rule.successors.iter_mut();
+        own.for_each(|s| drop_parts(s, &kept, &|symbol| bare.contains(symbol)));
+    }
+    grammar.rules.retain(|r| !bare.contains(&r.symbol));
+}
+
+/// True if an instance derives to nothing; `empty` are symbols that do where the rule says where parts stand.
+fn is_empty(
+    placed: &Placement,
+    rules: &FxHashMap<&str, &InstanceRule>,
+    empty: &FxHashSet<&str>,
+) -> bool {
+    let Some(rule) = rules.get(placed.symbol.as_str()) else {
+        return false;
+    };
+    if placed.parts.is_empty() {
+        return empty.contains(placed.symbol.as_str());
+    }
+    let parts = rule.successors.iter().enumerate();
+    parts
+        .map(|(i, own)| placed.parts.get(i).map_or(Some(own), Option::as_ref))
+        .all(|part| part.is_none_or(|part| is_empty(part, rules, empty)))
+}
+
+/// The parts of an instance without those of successors that are gone, and without those of symbols that are.
+fn drop_parts(
+    placed: &mut Placement,
+    kept: &FxHashMap<String, Vec<bool>>,
+    gone: &impl Fn(&str) -> bool,
+) {
+    for part in &mut placed.parts {
+        *part = part.take().filter(|p| !gone(&p.symbol));
+    }
     if let Some(stays) = kept.get(&placed.symbol) {
         let mut stays = stays.iter();
         placed.parts.retain(|_| stays.next().is_none_or(|s| *s));
     }
     let parts = placed.parts.iter_mut().flatten();
-    parts.for_each(|p| drop_parts(p, kept));
+    parts.for_each(|p| drop_parts(p, kept, gone));
 }
 
 fn scale(placed: &mut Placement, named: &impl Fn(&str) -> bool, factors: &[f64; 3]) {
