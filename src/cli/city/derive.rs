@@ -68,7 +68,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         write(&grammar, &derivation, &args.output, style)?;
     }
     args.json.end(&serde_json::json!({
-        "file": args.output, "buildings": derivation.buildings.len(), "instances": derivation.instances.len(),
+        "file": args.output, "buildings": derivation.count(), "instances": derivation.instances.len(),
     }))
 }
 

@@ -45,7 +45,7 @@ const KEEPS: &[Choice<Kept>] = &[
     ("all", "Everything", Kept::All),
     ("ids", "Identifiers, no attributes", Kept::Identifiers),
     ("buildings", "Identifiers, and neither textures nor patterns for synthesis", Kept::Buildings),
-    ("shape", "No attributes, identifiers, textures or patterns for synthesis", Kept::Shape),
+    ("shape", "No attributes, identifiers, textures or patterns for synthesis; buildings are named by numbers", Kept::Shape),
 ];
 
 /// Options.
@@ -205,14 +205,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let bytes = bytes.len();
     print::message("measuring");
     let iou = judge::iou(&input, &made.grammar).map_err(|e| failure(e.into(), args))?;
-    let rules = made.grammar.rules.len();
-    let escapes = made.grammar.escapes();
-    let residuals = made.grammar.residuals();
-    let non_terminals = made.grammar.non_terminals();
-    let (components, templates) = (
-        made.decomposition.components.len(),
-        made.grammar.templates.len(),
-    );
+    // What is counted is what is written.
+    let written = args.kept(&made.grammar);
+    let rules = written.rules.len();
+    let (escapes, residuals) = (written.escapes(), written.residuals());
+    let non_terminals = written.non_terminals();
+    let (components, templates) = (made.decomposition.components.len(), written.templates.len());
     if args.json {
         let summary = serde_json::json!({
             "buildings": input.buildings.len(), "components": components, "templates": templates,
@@ -231,10 +229,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
 impl Args {
     /// The bytes of the file that a grammar is written to.
     fn bytes_of(&self, grammar: &InstanceGrammar) -> Result<Vec<u8>> {
-        let grammar = &*self.said(grammar);
+        grammar_file::to_bytes(&self.kept(grammar), &self.output)
+    }
+
+    /// A grammar as it is written: with residuals or without, and with the part of it that is kept.
+    fn kept<'g>(&self, grammar: &'g InstanceGrammar) -> Cow<'g, InstanceGrammar> {
         match self.keep {
-            Kept::All => grammar_file::to_bytes(grammar, &self.output),
-            kept => grammar_file::to_bytes(&grammar.keeping(kept), &self.output),
+            Kept::All => self.said(grammar),
+            kept => Cow::Owned(self.said(grammar).keeping(kept)),
         }
     }
 

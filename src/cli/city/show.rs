@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let tree = Tree::of(&grammar);
     if args.json {
         let summary = serde_json::json!({
-            "buildings": derivation.buildings.len(), "instances": derivation.instances.len(),
+            "buildings": derivation.count(), "instances": derivation.instances.len(),
             "terminals": grammar.templates.len(), "non_terminals": grammar.non_terminals(),
             "rules": grammar.rules.len(), "depth": derivation.depth, "template_triangles": triangles,
             "escapes": grammar.escapes(), "residuals": grammar.residuals(),
@@ -49,14 +49,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
     print::line(&format!(
         "{}: {} buildings, {} placed templates\n{} terminals ({triangles} triangles), {} non-terminals, {} rules, depth {}",
         grammar.name,
-        derivation.buildings.len(),
+        derivation.count(),
         derivation.instances.len(),
         grammar.templates.len(),
         grammar.non_terminals(),
         grammar.rules.len(),
         derivation.depth
     ))?;
-    tree.tell(derivation.buildings.len())?;
+    tree.tell(derivation.count())?;
     let uses = Uses::new(&grammar.flat(None));
     let (types, rest): (Vec<&InstanceRule>, Vec<&InstanceRule>) = (grammar.rules.iter())
         .filter(|r| r.symbol != grammar.axiom)

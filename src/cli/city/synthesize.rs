@@ -73,7 +73,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let (made, derivation) =
         fill(&grammar, shape, args.seed, &tell).map_err(|e| Error::content(&args.grammar, e))?;
-    let count = derivation.buildings.len();
+    let count = derivation.count();
     match is_grammar {
         true => grammar_file::write(&made, &args.output)?,
         false => derive::write(&made, &derivation, &args.output, derive::Style::Instanced)?,

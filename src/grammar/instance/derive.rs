@@ -39,6 +39,9 @@ pub struct InstanceDerivation {
     pub buildings: Vec<(String, serde_json::Map<String, serde_json::Value>)>,
     /// Templates in place.
     pub instances: Vec<TemplateInstance>,
+    /// The first instance of each building without an identifier, in order: one of a rule with parameters, or a template that
+    /// stands in no building. It goes on to the next one; instances of `buildings` are not of it.
+    pub unnamed: Vec<usize>,
     /// Greatest number of rules applied one inside another.
     pub depth: usize,
     index: FxHashMap<String, usize>,
@@ -60,7 +63,12 @@ impl InstanceGrammar {
             symbols: &symbols,
         };
         let axiom = Placement::new(self.axiom.as_str(), [0.0; 3], 0.0, [1.0; 3]);
-        derivation.rule(start, &axiom, &Frame::WORLD, None, 1, &mut out)?;
+        let outside = Place {
+            building: None,
+            inside: false,
+            depth: 1,
+        };
+        derivation.rule(start, &axiom, &Frame::WORLD, outside, &mut out)?;
         Ok(out)
     }
 }
@@ -90,6 +98,17 @@ impl Frame {
     }
 }
 
+/// A place in a derivation.
+#[derive(Clone, Copy)]
+struct Place {
+    /// The building with an identifier that it is in.
+    building: Option<usize>,
+    /// True in a building without an identifier.
+    inside: bool,
+    /// Rules applied one inside another.
+    depth: usize,
+}
+
 struct Deriver<'a> {
     places: Places<'a>,
     symbols: &'a FxHashMap<&'a str, Symbol>,
@@ -101,13 +120,12 @@ impl Deriver<'_> {
         rule: usize,
         own: &Placement,
         frame: &Frame,
-        building: Option<usize>,
-        depth: usize,
+        place: Place,
         out: &mut InstanceDerivation,
     ) -> Result<(), InstanceGrammarError> {
-        out.depth = out.depth.max(depth);
+        out.depth = out.depth.max(place.depth);
         for placed in self.places.of(rule, own).iter().flatten() {
-            self.place(placed, frame, building, depth, out)?;
+            self.place(placed, frame, place, out)?;
         }
         Ok(())
     }
@@ -116,8 +134,11 @@ impl Deriver<'_> {
         &self,
         placed: &Placement,
         frame: &Frame,
-        building: Option<usize>,
-        depth: usize,
+        Place {
+            building,
+            inside,
+            depth,
+        }: Place,
         out: &mut InstanceDerivation,
     ) -> Result<(), InstanceGrammarError> {
         let (at, turn) = frame.place(placed);
@@ -129,6 +150,9 @@ impl Deriver<'_> {
             Some(&Symbol::Template(template)) => {
                 if out.instances.len() >= INSTANCE_LIMIT {
                     return Err(InstanceGrammarError::TooLarge);
+                }
+                if building.is_none() && !inside {
+                    out.unnamed.push(out.instances.len());
                 }
                 out.instances.push(TemplateInstance {
                     template,
@@ -145,7 +169,19 @@ impl Deriver<'_> {
                     turn,
                     scale: frame.scale * placed.size[0],
                 };
-                self.rule(rule, placed, &frame, building, depth + 1, out)
+                let begins = building.is_none() && !inside && self.places.is_type(rule);
+                let first = out.instances.len();
+                let inner = Place {
+                    building,
+                    inside: inside || begins,
+                    depth: depth + 1,
+                };
+                self.rule(rule, placed, &frame, inner, out)?;
+                let own = &out.instances[first..];
+                if begins && own.iter().any(|i| i.building.is_none()) {
+                    out.unnamed.push(first);
+                }
+                Ok(())
             }
             None => Err(InstanceGrammarError::UnknownPart(placed.symbol.clone())),
         }
@@ -153,6 +189,18 @@ impl Deriver<'_> {
 }
 
 impl InstanceDerivation {
+    /// Number of buildings, those without an identifier among them.
+    pub fn count(&self) -> usize {
+        self.buildings.len() + self.unnamed.len()
+    }
+
+    /// The first instance of the building without an identifier that an instance is of.
+    fn first(&self, instance: usize) -> usize {
+        let after = self.unnamed.partition_point(|&first| first <= instance);
+        let before = after.checked_sub(1).and_then(|k| self.unnamed.get(k));
+        before.map_or(instance, |&first| first)
+    }
+
     /// The index of a building, which is new at its first placement.
     fn building(
         &mut self,
@@ -173,7 +221,12 @@ impl InstanceDerivation {
             depth: self.depth,
             ..Self::default()
         };
+        let mut last = None;
         for &i in members {
+            if self.instances[i].building.is_none() && last != Some(self.first(i)) {
+                last = Some(self.first(i));
+                out.unnamed.push(out.instances.len());
+            }
             let mut instance = self.instances[i].clone();
             instance.at = [0, 1, 2].map(|k| instance.at[k] - origin[k]);
             let building = instance.building.map(|b| &self.buildings[b]);
@@ -183,7 +236,7 @@ impl InstanceDerivation {
         out
     }
 
-    /// The triangles of each building; instances outside all buildings are buildings of their own.
+    /// The triangles of each building; one without an identifier is named after its first instance, `instance-N`.
     pub fn city(&self, grammar: &InstanceGrammar) -> edifice_shape::triangles::City {
         use edifice_shape::triangles::{City, CityBuilding, OrientedBox};
         let named = self.buildings.iter().map(|(id, attributes)| CityBuilding {
@@ -192,12 +245,17 @@ impl InstanceDerivation {
             ..CityBuilding::default()
         });
         let mut buildings: Vec<CityBuilding> = named.collect();
+        let mut last = None;
         for (i, instance) in self.instances.iter().enumerate() {
             let building = instance.building.unwrap_or_else(|| {
-                buildings.push(CityBuilding {
-                    id: format!("instance-{i}"),
-                    ..CityBuilding::default()
-                });
+                let first = self.first(i);
+                if last != Some(first) {
+                    last = Some(first);
+                    buildings.push(CityBuilding {
+                        id: format!("instance-{first}"),
+                        ..CityBuilding::default()
+                    });
+                }
                 buildings.len() - 1
             });
             let template = &grammar.templates[instance.template];

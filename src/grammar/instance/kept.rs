@@ -14,8 +14,8 @@ pub enum Kept {
     /// The buildings that the axiom derives to, with identifiers; no attributes, textures, or rules that the axiom does
     /// not lead to.
     Buildings,
-    /// The instances that the axiom derives to, without identifiers, attributes and textures: each part is a building
-    /// of its own.
+    /// The instances that the axiom derives to, without identifiers, attributes and textures: an instance of a type of
+    /// buildings is one, and so is each template that stands in none.
     Shape,
 }
 

@@ -28,6 +28,11 @@ impl<'g> Places<'g> {
         self.rules.get(symbol).copied()
     }
 
+    /// True of a rule with parameters, which is a type of buildings.
+    pub(super) fn is_type(&self, rule: usize) -> bool {
+        self.grammar.rules[rule].levels > 0
+    }
+
     /// The successors of a rule in its instance `own`, in metres in the frame of `own`; `None` is absent.
     ///
     /// In a row ([`InstanceRule::row`]) the first successor stands at its own place, and each of the others begins where the one before
