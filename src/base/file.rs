@@ -75,6 +75,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),
     };
+    if !folder.exists() {
+        let problem = format!("there is no folder {}", folder.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, problem));
+    }
     remove_left_over(&folder);
     // The system's error names the temporary file, which means nothing to the user: keep its kind.
     let mut file = temporary(&folder).map_err(|e| e.kind())?;
@@ -189,6 +193,11 @@ mod tests {
         let missing = folder.path().join("none/a.txt");
         let message = write_atomic(&missing, b"x").unwrap_err().to_string();
         assert!(message.contains("none/a.txt: cannot write"), "{message}");
+        let named = format!(
+            "there is no folder {}",
+            folder.path().join("none").display()
+        );
+        assert!(message.contains(&named), "{message}");
         let message = write_atomic(folder.path(), b"x").unwrap_err().to_string();
         assert!(message.contains("directory"), "{message}");
         let locked = folder.path().join("locked.txt");

@@ -192,3 +192,21 @@ fn bad_input_is_named() {
     assert!(message.contains("corrupt model"), "{message}");
     complaint(&mut edifice(&["sample"]), 2);
 }
+
+/// What need not be closed is not called so.
+#[test]
+fn sets_of_surfaces_are_not_called_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.city.json");
+    let text = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],"translate":[0,0,0]},
+        "CityObjects":{"h":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]],
+        "semantics":{"surfaces":[{"type":"RoofSurface"}],"values":[0]}}]}},
+        "vertices":[[0,0,0],[5000,0,0],[0,5000,0]]}"#;
+    std::fs::write(&path, text).unwrap();
+    let output = edifice(&["check", &path.to_string_lossy()])
+        .assert()
+        .success();
+    let messages = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+    let told = "0 closed, one shell each, 1 sets of surfaces, which need not be closed";
+    assert!(messages.contains(told), "{messages}");
+}

@@ -86,6 +86,30 @@ fn a_village_of_known_boxes_is_measured_exactly() {
     assert_eq!(reason("shed_small"), "size");
 }
 
+/// Floors inside, as a derived city has between its parts, are under the roof and no volume of their own.
+#[test]
+fn faces_inside_add_no_volume() {
+    let mut city = village();
+    let plain = surveyed(&city);
+    for b in &mut city.buildings {
+        let (low, high) = b.mesh.bounds().unwrap();
+        let [x, y] = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+        for z in [low[2] + 1.5, low[2] + 2.5] {
+            let first = b.mesh.positions.len() as u32;
+            let corners = [[-1.5, -1.5], [1.5, -1.5], [0.0, 1.5]];
+            let corners = corners.map(|[dx, dy]| [x + dx, y + dy, z]);
+            b.mesh.positions.extend(corners);
+            b.mesh.triangles.push([first, first + 1, first + 2]);
+            b.mesh.triangles.push([first, first + 2, first + 1]);
+        }
+    }
+    let floored = surveyed(&city);
+    for name in ["gable", "hip", "flat", "shed"] {
+        let [a, b] = [&plain, &floored].map(|found| house(&city, found, name).fit.volume);
+        assert!((a - b).abs() < 1e-9, "{name}: {a} and {b}");
+    }
+}
+
 /// Turning and moving a city changes no house but for the sides that are called front and left.
 #[test]
 fn orientation_and_place_do_not_matter() {

@@ -23,3 +23,4 @@ mod photographs;
 mod systems;
 mod textures;
 mod tiles;
+mod town;

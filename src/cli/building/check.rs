@@ -58,7 +58,7 @@ struct Faults {
 
 /// Runs `check`.
 pub(super) fn check(args: &CheckArgs) -> Result<()> {
-    let (mut all, mut bad) = (0, 0);
+    let (mut all, mut bad, mut open) = (0, 0, 0);
     for path in &args.files {
         if path.extension().is_some_and(|e| e == "obj") {
             let found = surface_obj::read(path)?.check().map(|r| r.shells);
@@ -76,6 +76,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<()> {
             for shell in detailed_cityjson::shells(path)? {
                 let faults = detailed_cityjson::faults(&shell);
                 all += 1;
+                open += usize::from(!shell.is_solid);
                 bad += usize::from(!faults.is_empty());
                 tell(&shell.name, &faults, args.json)?;
             }
@@ -102,8 +103,13 @@ pub(super) fn check(args: &CheckArgs) -> Result<()> {
     if bad > 0 {
         return Err(Error::method(Faults { bad, all }));
     }
+    let surfaces = match open {
+        0 => String::new(),
+        open => format!(", {open} sets of surfaces, which need not be closed"),
+    };
     print::message(&format!(
-        "{all} closed, one shell each, nothing overlapping or hidden{}",
+        "{} closed, one shell each{surfaces}, nothing overlapping or hidden{}",
+        all - open,
         if args.plausible { ", plausible" } else { "" }
     ));
     Ok(())

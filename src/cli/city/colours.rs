@@ -262,10 +262,10 @@ fn legend(steps: &[f64; 5], unit: &str) -> Legend {
         5 => format!("over {}{unit}", number(steps[4])),
         _ => format!("to {}{unit}", number(steps[k])),
     };
-    RAMP.into_iter()
-        .enumerate()
-        .map(|(k, c)| (c, text(k)))
-        .collect()
+    // Between equal steps there is no class.
+    let is_class = |k: usize| k == 0 || k == 5 || steps[k] > steps[k - 1];
+    let classes = RAMP.into_iter().enumerate().filter(|(k, _)| is_class(*k));
+    classes.map(|(k, c)| (c, text(k))).collect()
 }
 
 fn number(v: f64) -> String {

@@ -56,6 +56,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
             locate_facades(&landmarks, &facades, &view, args.top)
         }
     };
+    if places.is_empty() {
+        print::message("no place matches: too few buildings stand around any");
+    }
     for (rank, found) in places.iter().enumerate() {
         let id = |l: usize| city.buildings[building[l]].id.as_str();
         let near = id(found.landmark);

@@ -4,8 +4,7 @@ use serde::Serialize;
 
 use super::heights::HeightMap;
 use super::surfaces::{ground, roof};
-use edifice_shape::triangles::{Corners, TriangleMesh, normal, plan_area};
-use edifice_shape::vec3::norm;
+use edifice_shape::triangles::{Corners, TriangleMesh, plan_area};
 use edifice_shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 
 /// Nearness of a measured house.
@@ -13,7 +12,7 @@ use edifice_shape::{MassBox, PlanUnion, Rect, Ridge, RoofStyle};
 pub struct Fit {
     /// Intersection over union of the plans, from the file's triangles clipped by the boxes; in `[0, 1]`.
     pub iou: f64,
-    /// Volume under the boxes' roofs over that under the file's roof triangles.
+    /// Volume under the boxes' roofs over that under the file's highest surfaces.
     pub volume: f64,
     /// Mean absolute difference of the heights over the plan (m).
     pub height_error: f64,
@@ -47,24 +46,19 @@ impl Fit {
             .sum();
         let iou = shared / (measured + union.area() - shared);
 
-        // Prisms between the ground and the roof triangles; winding is not to be relied on.
-        let volume: f64 = roof(mesh)
-            .map(|t| {
-                let n = normal(&t);
-                let slope = n[2].abs() / norm(n);
-                norm(n) / 2.0 * slope * (t[0][2] + t[1][2] + t[2][2]) / 3.0
-            })
-            .sum();
         let mut off = 0.0;
-        let (mut n, mut fitted) = (0.0, 0.0);
+        let (mut n, mut fitted, mut truth) = (0.0, 0.0, 0.0);
         for s in map.samples() {
             let height = height(boxes, sign * s.x, sign * s.y);
             off += (height - s.height).abs();
             n += 1.0;
             fitted += height;
+            truth += s.height;
         }
         // What of the boxes lies outside the plan counts with their mean height.
         let own = fitted / f64::max(n, 1.0) * union.area();
+        // Faces inside, as between the parts of a derived city, are below the highest ones and count for nothing.
+        let volume = truth * map.cell();
         Self {
             iou,
             volume: own / volume.max(1e-9),
