@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use edifice_base::{Error, Result};
 use edifice_building_exteriors::attributes::COLUMNS;
+use edifice_building_exteriors::house::inspect::faults;
 use edifice_building_exteriors::house::{
     Database, Generated, HouseReport, Joining, Method, Options,
 };
@@ -127,8 +128,17 @@ impl Output {
 struct Made {
     /// Its report.
     line: String,
-    /// The house and true if it has another row, unless it was there already.
-    house: Option<(Generated, bool)>,
+    /// The house, unless it was there already.
+    house: Option<New>,
+}
+
+/// A house that was made now.
+struct New {
+    house: Generated,
+    /// True if it has another row than its own.
+    other: bool,
+    /// True if `building check` finds something.
+    faulty: bool,
 }
 
 /// Makes and writes the houses; `source` is the file of their rows, for errors. Those that are there already, with all files
@@ -168,11 +178,15 @@ pub(super) fn produce(
         let line = output.write(&house, seconds, &before)?;
         Ok(Made {
             line,
-            house: Some((house, other)),
+            house: Some(New {
+                faulty: !faults(&house.building, options.joining).is_empty(),
+                house,
+                other,
+            }),
         })
     };
     let mut street: Vec<(Building, edifice_building_exteriors::house::Model)> = Vec::new();
-    let (mut done, mut there, mut near, mut replaced) = (0, 0, 0, 0);
+    let (mut done, mut there, mut near, mut replaced, mut bad) = (0, 0, 0, 0, 0);
     for (chunk, orders) in orders.chunks(CHUNK).enumerate() {
         let numbered = orders.par_iter().enumerate();
         let made = numbered.map(|(k, order)| make((chunk * CHUNK + k, order)));
@@ -183,11 +197,17 @@ pub(super) fn produce(
             if output.json {
                 print::line(&made.line)?;
             }
-            let Some((house, other)) = made.house else {
+            let Some(New {
+                house,
+                other,
+                faulty,
+            }) = made.house
+            else {
                 there += 1;
                 continue;
             };
             replaced += usize::from(other);
+            bad += usize::from(faulty);
             near += usize::from(house.report.repaired_z <= 0.05);
             if output.street {
                 street.push((house.building, house.model));
@@ -205,6 +225,11 @@ pub(super) fn produce(
     if replaced > 0 {
         print::message(&format!(
             "{replaced} houses missed their samples or were implausible and gave way to others"
+        ));
+    }
+    if bad > 0 {
+        print::message(&format!(
+            "{bad} houses have faults, which `building check` names"
         ));
     }
     let known = match there {

@@ -14,6 +14,7 @@ use super::model::{expected_volume, model};
 use super::roofs::Joining;
 use super::walls::walls_of_pieces;
 use crate::mass::THINNEST;
+use crate::mass::contradiction::STOREY;
 use edifice_shape::{
     BoxStyle, Building, ElementStyle, Hidden, MassBox, PlanUnion, RoofStyle, Side,
 };
@@ -23,7 +24,6 @@ const VOLUME: f64 = 1e-9;
 /// Least extent of a box, least and greatest height of a box and of a floor (m), and steepest roof (degrees).
 const THIN: f64 = 0.3;
 const HEIGHTS: [f64; 2] = [1.0, 40.0];
-const FLOOR_HEIGHTS: [f64; 2] = [1.8, 8.0];
 const STEEPEST: f64 = 80.0;
 /// Least size of an element (m); narrowest and lowest door, and how far above its floor it may begin.
 const SMALLEST: f64 = 0.1;
@@ -63,7 +63,7 @@ fn general(building: &Building, found: &mut Vec<String>) {
             building.unit
         ));
     }
-    let [low, high] = FLOOR_HEIGHTS;
+    let [low, high] = STOREY;
     if !(low..=high).contains(&building.floor_height) {
         found.push(format!(
             "floor_height is {}, expected {low} to {high} m",

@@ -25,7 +25,7 @@ const SHARES: [([f64; 2], &str); 3] = [
     ),
 ];
 /// Heights of storeys (m) beyond which a house has no rooms that one could live in.
-const STOREY: [f64; 2] = [1.8, 8.0];
+pub(crate) const STOREY: [f64; 2] = [1.8, 8.0];
 /// Largest size of a house (m), and what rounding may leave of a zero.
 const LARGEST: f64 = 200.0;
 const ROUNDING: f64 = 1e-9;
