@@ -5,6 +5,7 @@ mod cases;
 
 mod again;
 mod attributes;
+mod bays;
 mod broken;
 mod coding;
 mod commands;

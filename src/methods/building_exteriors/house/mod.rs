@@ -1,5 +1,6 @@
 //! Houses: a building with its attributes as one closed surface (Sec. 6.1), and the database it takes from.
 
+mod clearance;
 mod database;
 mod generate;
 pub mod inspect;

@@ -1,9 +1,11 @@
 //! A building as one closed surface with its windows and doors.
 
+use super::clearance::is_clear;
 use super::roofs::Joining;
 use super::solids::prisms;
 use super::walls::{WallPiece, wall_pieces, walls_of_pieces};
 use super::windows::{bare, cased, garage_door};
+use edifice_shape::solid::exact::{UNIT, units};
 use edifice_shape::solid::{
     Faces, Finish, Opening, Prism, Report, Span, Surface, SurfaceError, Wall, faces, integral,
 };
@@ -49,7 +51,7 @@ pub(super) fn furnished(building: &Building, mut shell: Faces) -> Result<Model, 
         for (k, e) in piece.elements.iter().enumerate() {
             let (u, z) = (piece.start + e.x, piece.base + e.y);
             let rect = [[u, u + e.width], [z, z + e.height]];
-            let cut = wall.and_then(|w| place(&mut shell, &w.wall(), e.style, rect));
+            let cut = wall.and_then(|w| place(&mut shell, &exact(w.wall()), e.style, rect));
             match cut {
                 Some(volume) => openings += volume,
                 None => unplaced.push((i, k)),
@@ -58,7 +60,7 @@ pub(super) fn furnished(building: &Building, mut shell: Faces) -> Result<Model, 
     }
     if let Some((wall, rect)) = garage_opening(building, &shell) {
         let opening = Opening {
-            wall,
+            wall: exact(wall),
             panel: garage_door(rect),
         };
         openings += shell.cut(&opening).unwrap_or(0.0);
@@ -80,6 +82,15 @@ pub fn expected_volume(building: &Building, joining: Joining, openings: f64) -> 
     integral::volume(&solids) - openings
 }
 
+/// A wall where its faces are, in whole units; what differs by rounding alone is left as it is.
+fn exact(wall: Wall) -> Wall {
+    let at = units(wall.at) as f64 * UNIT;
+    match (at - wall.at).abs() > 1e-9 {
+        true => Wall { at, ..wall },
+        false => wall,
+    }
+}
+
 /// Cuts an element into its wall: with a casing where there is room, else without.
 fn place(shell: &mut Faces, wall: &Wall, style: ElementStyle, mut rect: Span) -> Option<f64> {
     if style == ElementStyle::Door {
@@ -91,6 +102,12 @@ fn place(shell: &mut Faces, wall: &Wall, style: ElementStyle, mut rect: Span) ->
             return None;
         }
     }
+    // A bay that would reach into the eaves is a window like any other.
+    let bay = style == ElementStyle::Bay;
+    let style = match bay && !is_clear(shell, wall, &rect, -cased(style, rect).depth) {
+        true => ElementStyle::Fixed,
+        false => style,
+    };
     let mut cut = |panel| {
         let wall = *wall;
         shell.cut(&Opening { wall, panel })
