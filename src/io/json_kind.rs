@@ -4,7 +4,7 @@ use std::path::Path;
 
 use edifice_base::{Error, Result};
 
-/// What stands before `.json` in the names of files of one kind (`FORMATS.md`).
+/// The words before `.json` in the names of files of one kind (`FORMATS.md`).
 const KINDS: [&str; 15] = [
     "building",
     "city",
