@@ -132,7 +132,7 @@ impl Shape {
         if let (None, Some(w), Some(d), Some(bcr)) = (given[4], row[0], row[1], row[3]) {
             let recess = match (plan, self.recess) {
                 // A recess is no deeper than the house, however small that is.
-                (RECESSED, Some(recess)) => recess.max(RECESSES[0]).min(RECESSES[1]).min(d.min(w)),
+                (RECESSED, Some(recess)) => recess.clamp(RECESSES[0], RECESSES[1]).min(d.min(w)),
                 _ => 0.0,
             };
             let area = Some(bcr * w * d).filter(|area| *area > 0.0);
