@@ -2,15 +2,13 @@
 //!
 //! Read are `network`, `variable` blocks with `type discrete`, and `probability` blocks with
 //! `table`, one line per configuration `(a, b) p, q;`, or `default`; properties and comments are
-//! skipped. Blocks come in any order; what is stated twice is refused. A word in quotation marks may hold spaces and marks. Rows that are off 1 by rounding (less than 1e-3) are normalised. `default` fills at most
-//! [`MOST_DEFAULTS`] numbers in all: a line of it can stand for more than there is memory.
+//! skipped. Blocks come in any order; what is stated twice is refused. A word in quotation marks may hold spaces and marks.
+//! Rows that are off 1 by rounding (less than 1e-3) are normalised. `default` fills at most 4,194,304 numbers in all: a line
+//! of it can stand for more than there is memory.
 
 use super::super::error::ModelError;
 use super::bif_reader::Reader;
 use super::{Cpd, Network, Stated, Variable};
-
-/// Most probabilities that the `default` lines of a file may stand for.
-pub(super) const MOST_DEFAULTS: usize = 1 << 22;
 
 impl Network {
     /// Reads a discrete network.

@@ -3,8 +3,10 @@
 use std::collections::HashMap;
 
 use super::super::error::ModelError;
-use super::bif::MOST_DEFAULTS;
 use super::{Stated, Variable};
+
+/// Most probabilities that the `default` lines of a file may stand for.
+const MOST_DEFAULTS: usize = 1 << 22;
 
 /// (line, word) with punctuation as words of its own.
 fn tokens(text: &str) -> Vec<(usize, String)> {
