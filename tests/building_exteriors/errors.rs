@@ -120,7 +120,7 @@ fn an_unseen_category_is_refused() {
     let folder = learned();
     refused(
         complete(folder.path(), "9,5,flat\n9,5,dome\n"),
-        &["`roof`", "row 1", "`dome`"],
+        &["`roof`", "row 2", "`dome`"],
     );
 }
 
@@ -129,7 +129,7 @@ fn evidence_of_probability_zero_is_refused() {
     let folder = learned();
     refused(
         complete(folder.path(), "9,5,flat\n9,1e200,flat\n"),
-        &["row 1", "probability zero", "`h`"],
+        &["row 2", "probability zero", "`h`"],
     );
     let args = ["sample", "m.houses.json", "--given", "w=1e200"];
     refused(run(folder.path(), &args), &["probability zero", "`w`"]);
