@@ -193,7 +193,7 @@ fn bad_input_is_named() {
     complaint(&mut edifice(&["sample"]), 2);
 }
 
-/// What need not be closed is not called so.
+/// Surfaces that need not be closed are not called so.
 #[test]
 fn sets_of_surfaces_are_not_called_closed() {
     let folder = tempfile::tempdir().unwrap();

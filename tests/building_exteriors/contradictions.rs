@@ -117,7 +117,7 @@ fn contradictory_attributes_are_refused_and_nothing_is_written() {
     }
 }
 
-/// What no house can have is refused where it is read, by the name of what was written, before anything is drawn.
+/// Values that no house can have are refused where they are read, by the name of what was written, before anything is drawn.
 #[test]
 fn impossible_evidence_is_refused_by_its_own_name() {
     let folder = tempfile::tempdir().unwrap();
